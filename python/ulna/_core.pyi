@@ -1,0 +1,233 @@
+"""What the compiled core offers to Python: arrays in, arrays out, mm and rad always.
+
+Nothing here reads files, prints or knows units other than mm and rad; the typed front (`ulna.model` and
+above) does that. All functions release the GIL. `UlnaError` carries a message meant for the user.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+type F64 = NDArray[np.float64]
+type I64 = NDArray[np.int64]
+type Bool = NDArray[np.bool_]
+
+#: called from the core about ten times a second with (stage, done, total); stage is "fit", "search", "monte carlo", …
+type Progress = Callable[[str, int, int], None]
+
+__version__: str
+
+class UlnaError(ValueError):
+    """A question that the core cannot answer, in words for the user."""
+
+def simd_level() -> str:
+    """Which instruction set the batch kernels run on: "avx512", "avx2", "neon" or "scalar"."""
+
+class Arm:
+    """Geometry of an arm and its probes. Immutable."""
+
+    def __init__(
+        self,
+        theta0_rad: F64,  # (n,) the last one must be 0: the last joint carries the probe
+        alpha_rad: F64,  # (n,) likewise
+        a_mm: F64,  # (n,) likewise
+        d_mm: F64,  # (n,) likewise; must be 0 where hayati
+        beta_rad: F64,  # (n,) likewise; must be 0 where not hayati
+        sign: F64,  # (n,) +1 or -1
+        hayati: Bool,  # (n,)
+        probe_names: Sequence[str],
+        tips_mm: F64,  # (P, 3)
+    ) -> None: ...
+    @property
+    def joints(self) -> int: ...
+    @property
+    def probe_names(self) -> list[str]: ...
+    @property
+    def parameter_names(self) -> list[str]:
+        """`joint.1.theta0, joint.1.alpha, joint.1.a, joint.1.d (or .beta) … probe.bent.x, .y, .z`; 4(n-1) + 3P."""
+    @property
+    def parameter_units(self) -> list[str]:
+        """"rad" or "mm" for each of `parameter_names`."""
+    @property
+    def parameters(self) -> F64: ...
+    def with_parameters(self, parameters: F64) -> Arm: ...
+    def reach_mm(self, probe: int = 0) -> float:
+        """Sum of the lengths of all links and the tip: nothing is farther from the base."""
+    def tip(self, q_rad: F64, probe: int | I64 = 0) -> F64:
+        """(N, n) encoder angles → (N, 3) tip positions in the base frame; probe one index or one per row."""
+    def tip_plain(self, q_rad: F64, probe: int = 0) -> F64:
+        """The same by 4×4 matrices, one pose at a time: the formula as written, for comparison."""
+    def jacobian(self, q_rad: F64, probe: int = 0) -> F64:
+        """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm/rad and mm/mm."""
+    def encoder_jacobian(self, q_rad: F64, probe: int = 0) -> F64:
+        """(N, n) → (N, 3, n): ∂p/∂q_i, mm/rad."""
+    def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64) -> F64:
+        """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
+    def direction_effect(self, q_rad: F64, probe: int, columns: I64, directions: F64) -> F64:
+        """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters here."""
+    def pose_for_points(
+        self, points_mm: F64, limits_rad: F64, seed: int, probe: int = 0, tries: int = 40
+    ) -> tuple[F64, Bool]:
+        """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a random
+        elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
+    def check_jacobian(self, q_rad: F64, probe: int = 0) -> float:
+        """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
+
+class LostDirection(TypedDict):
+    combination: dict[str, float]  # physical units (rad, mm); the largest effect has weight 1; moving along it changes no residual
+    cause: str  # "base-frame", "scale", "probe-on-axis", "probe-unused", "joint-still", "parallel-axes", "coverage"
+    because: str
+    remedy: str
+    frame: bool  # true: a rigid motion of the base frame or such; no length or shape depends on it
+
+class WeakDirection(TypedDict):
+    combination: dict[str, float]
+    u: float  # standard uncertainty of the combination's leading parameter, in `unit`
+    unit: str
+    because: str
+    remedy: str
+
+class Identifiability:
+    @property
+    def parameters(self) -> int:
+        """Number of free parameters asked about."""
+    @property
+    def determined(self) -> int: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def singular_values(self) -> list[float]:
+        """Of the Jacobian with columns scaled to unit norm, placements eliminated; descending; zeros for vanished columns."""
+    @property
+    def condition(self) -> float:
+        """Smallest kept singular value over the largest."""
+    @property
+    def lost(self) -> list[LostDirection]: ...
+    @property
+    def weak(self) -> list[WeakDirection]:
+        """Determined, but worse than an arm is known from its drawing (1 mm, 0.01 rad unless said otherwise)."""
+    @property
+    def not_determined(self) -> list[str]:
+        """Every free parameter that takes part in a lost direction."""
+
+class Problem:
+    """Readings of features of placed artefacts, to be explained by one arm."""
+
+    def __init__(self, arm: Arm, encoder_u_rad: F64 | None = None, seat_u_mm: float | None = None) -> None:
+        """Standard deviations of the noise: (n,) per encoder, and of a touch per coordinate. Both None: every reading weighs one."""
+    def add_lengths(
+        self, artefact: str, q_rad: F64, p_rad: F64, probe: I64, length_mm: F64, length_u_mm: float = 0.0
+    ) -> int:
+        """Rows of two poses (N, n), (N, n) and the distance (N,) between their tips. Returns the group's number."""
+    def add_points(
+        self,
+        artefact: str,
+        features_mm: F64,  # (F, 3); a bar has (0,0,0) and (L,0,0); a seat has (0,0,0)
+        frame: str,  # "free": each placement has an unknown pose; "arm": coordinates in the base frame
+        q_rad: F64,  # (N, n)
+        probe: I64,  # (N,) index into the arm's probes
+        feature: I64,  # (N,) index into features
+        placement: I64,  # (N,) any labels; equal means the same standing of the artefact. Ignored for frame = "arm"
+        feature_u_mm: float = 0.0,
+    ) -> int: ...
+    @property
+    def arm(self) -> Arm: ...
+    def with_arm(self, arm: Arm) -> Problem: ...
+
+class Fitted:
+    """What a fit found and how it ended. Also what an evaluation finds: a fit with everything held."""
+
+    @property
+    def arm(self) -> Arm: ...
+    @property
+    def start(self) -> F64: ...
+    @property
+    def parameters(self) -> F64: ...
+    @property
+    def termination(self) -> str:
+        """"converged-cost", "converged-step", "converged-gradient", "exact", "nothing-to-fit", "no-progress",
+        "max-iterations", "poor-minimum"."""
+    @property
+    def converged(self) -> bool: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def cost_start(self) -> float:
+        """Sum of squares of the whitened residuals (mm² where no noise is stated)."""
+    @property
+    def cost(self) -> float: ...
+    @property
+    def rms_start_mm(self) -> float:
+        """Of a reading's residual: √(mean of squared norms), mm, unweighted."""
+    @property
+    def rms_mm(self) -> float: ...
+    @property
+    def observations(self) -> int:
+        """Scalar equations: 3 per point reading, 1 per length row."""
+    @property
+    def placement_unknowns(self) -> int: ...
+    @property
+    def degrees_of_freedom(self) -> int:
+        """observations − placement unknowns − determined parameters."""
+    @property
+    def chi2_per_dof(self) -> float | None:
+        """None without stated noise or without degrees of freedom."""
+    @property
+    def searched_starts(self) -> int:
+        """0: the given start was good enough."""
+    @property
+    def search_reason(self) -> str:
+        """"" or "asked" or "poor-minimum"."""
+    @property
+    def folded(self) -> list[str]:
+        """Which symmetries brought the found arm back near the nominal: "flip of joint 3", "mirror"."""
+    @property
+    def identifiability(self) -> Identifiability: ...
+    @property
+    def covariance(self) -> F64:
+        """(k, k) over `covariance_columns`, rad and mm; with stated noise as stated, else scaled by the residuals;
+        lost directions held at their values. All of it NaN where there are no degrees of freedom to estimate it from."""
+    @property
+    def covariance_columns(self) -> I64:
+        """Indices of the free parameters."""
+    def residuals(self, group: int) -> F64:
+        """(N, 3) mm in the base frame: tip minus where the feature stands; or (N, 1) for a length group: distance minus length."""
+    def residuals_start(self, group: int) -> F64: ...
+    def weights(self, group: int) -> F64:
+        """(N,) root of the weight of each reading, 1/mm (1 without stated noise), isotropic equivalent."""
+
+def fit(
+    problem: Problem,
+    hold: Bool,  # (parameters,) true: not fitted
+    start: str = "given",  # or "search"
+    max_iterations: int = 200,
+    seed: int = 0,
+    search_starts: int = 400,
+    known_length_mm: float = 1.0,
+    known_angle_rad: float = 0.01,
+    threads: int = 1,
+    progress: Progress | None = None,
+) -> Fitted:
+    """Calibrate. Raises UlnaError for fewer observations than unknowns; KeyboardInterrupt when interrupted.
+    Everything held: evaluate (placements are fitted, the arm is not)."""
+
+def identify(
+    problem: Problem, hold: Bool, known_length_mm: float = 1.0, known_angle_rad: float = 0.01
+) -> Identifiability:
+    """What these readings can and cannot determine at the problem's own arm, without fitting."""
+
+def recalibrate(
+    problem: Problem,
+    hold: Bool,
+    truth: Arm,
+    runs: int,
+    seed: int = 0,
+    threads: int = 1,
+    progress: Progress | None = None,
+) -> tuple[F64, F64, Bool]:
+    """Calibrations repeated on new noise: readings are taken as exact for `truth`, the problem's stated noise is drawn
+    anew for each run. Returns parameters (runs, P), standard uncertainties (runs, P; NaN where held or not determined), converged (runs,)."""
