@@ -1,0 +1,95 @@
+"""Ulna: calibration of articulated measuring arms.
+
+    import ulna
+    study = ulna.Study.load("study.toml")
+    result = ulna.calibrate(study)
+    result.save("out")
+
+Names are loaded when they are first used, so that `import ulna` and `ulna --help` stay quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from ulna.calibrate import calibrate
+    from ulna.cross_validate import CrossValidation, cross_validate
+    from ulna.errors import InputWarning, UlnaInputError
+    from ulna.evaluate import Evaluation, evaluate
+    from ulna.identify import identify
+    from ulna.measure import measure
+    from ulna.model import Arm, Joint, Probe
+    from ulna.result import Result
+    from ulna.study import Artefact, FitOptions, Noise, Readings, Study
+
+__all__ = [
+    "Arm",
+    "Artefact",
+    "CrossValidation",
+    "Evaluation",
+    "FitOptions",
+    "InputWarning",
+    "Joint",
+    "Noise",
+    "Probe",
+    "Readings",
+    "Result",
+    "Study",
+    "UlnaInputError",
+    "__version__",
+    "calibrate",
+    "cross_validate",
+    "evaluate",
+    "identify",
+    "measure",
+]
+
+_WHERE = {
+    "Arm": "model",
+    "Artefact": "study",
+    "CrossValidation": "cross_validate",
+    "Evaluation": "evaluate",
+    "FitOptions": "study",
+    "InputWarning": "errors",
+    "Joint": "model",
+    "Noise": "study",
+    "Probe": "model",
+    "Readings": "study",
+    "Result": "result",
+    "Study": "study",
+    "UlnaInputError": "errors",
+    "calibrate": "calibrate",
+    "cross_validate": "cross_validate",
+    "evaluate": "evaluate",
+    "identify": "identify",
+    "measure": "measure",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'ulna' has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"ulna.{_WHERE[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+class _Package(ModuleType):
+    """`ulna.calibrate` is the function, also after the module `ulna.calibrate` was imported by somebody else."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _WHERE and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -1,0 +1,30 @@
+"""What Ulna says to a user whose input it cannot use, or uses with a remark.
+
+One message names the file, the row and column or the key, the value, what was expected and what to do. The command
+line prints it and exits with code 2; no traceback, no value put in its place.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class UlnaInputError(Exception):
+    """Input that cannot be used. ``str(error)`` is the whole message, meant for the user (exit code 2)."""
+
+
+class InputWarning(UserWarning):
+    """Input that is used, with a remark that the user should see."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """`" Did you mean 'x'?"`, or `" Known: a, b, c."` where nothing is near: the tail of a message."""
+    names = list(known)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    if close:
+        return f" Did you mean '{close[0]}'?"
+    if not names:
+        return ""
+    shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
+    return f" Known: {shown}."

@@ -1,0 +1,225 @@
+"""A study in memory: an arm, what it touched, and what to fit. Units are mm and rad, always.
+
+Made from files by `ulna.files.study`; nothing here reads or writes.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError, nearest
+from ulna.model import Arm
+
+if TYPE_CHECKING:
+    from ulna import _core
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+Bool = NDArray[np.bool_]
+
+ArtefactKind = Literal["bar", "seat", "points", "length"]
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """A set of features with calibrated coordinates: what the arm touches."""
+
+    name: str
+    kind: ArtefactKind
+    features: dict[str, tuple[float, float, float]]
+    """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; length: none."""
+    length_mm: float | None = None
+    """bar only: distance between its seats."""
+    u_mm: float = 0.0
+    """Standard uncertainty: of the length of a bar or of length rows; per coordinate of each feature of points."""
+    frame: Literal["free", "arm"] = "free"
+    """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
+
+
+@dataclass(frozen=True)
+class InputFile:
+    """A file that was read, so that a result can say from what it was made."""
+
+    path: Path
+    sha256: str
+    rows: int
+    """Data rows; 0 for a file that has none (an arm, a study)."""
+
+
+@dataclass
+class Readings:
+    """All readings of one artefact, one touch a row (or, of kind length, two poses a row)."""
+
+    artefact: Artefact
+    q_rad: F64
+    """(N, n) encoder angles."""
+    p_rad: F64 | None
+    """(N, n) encoder angles of the second pose; length rows only."""
+    length_mm: F64 | None
+    """(N,) distance between the two poses; length rows only."""
+    probe: I64
+    """(N,) index into the arm's probes."""
+    feature: I64
+    """(N,) index into the artefact's features, in their order; 0 for length rows."""
+    placement: NDArray[np.object_]
+    """(N,) str labels; equal means the same standing of the artefact."""
+    row: I64
+    """(N,) data row in its file, counted from 1, the header not counted."""
+    file: I64
+    """(N,) index into `Study.files`."""
+    id: NDArray[np.object_] | None = None
+    """(N,) str, where the file has a column ``id``."""
+    temperature_c: F64 | None = None
+    """(N,) or (N, n), °C."""
+
+    def __len__(self) -> int:
+        return len(self.q_rad)
+
+    def select(self, mask: Bool | I64) -> Readings:
+        """The rows of a mask (N,) or of indices, in order."""
+
+        def of(values: Any) -> Any:
+            return None if values is None else values[mask]
+
+        return Readings(
+            artefact=self.artefact,
+            q_rad=of(self.q_rad),
+            p_rad=of(self.p_rad),
+            length_mm=of(self.length_mm),
+            probe=of(self.probe),
+            feature=of(self.feature),
+            placement=of(self.placement),
+            row=of(self.row),
+            file=of(self.file),
+            id=of(self.id),
+            temperature_c=of(self.temperature_c),
+        )
+
+    @property
+    def placement_code(self) -> I64:
+        """(N,) a number for each placement label, counted in the order in which they appear."""
+        seen: dict[str, int] = {}
+        return np.fromiter((seen.setdefault(label, len(seen)) for label in self.placement), np.int64, len(self))
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations of the readings. Without it every reading weighs one."""
+
+    encoder_rad: F64 | None = None
+    """(n,) per joint."""
+    seat_mm: float | None = None
+    """Of a touch, per coordinate."""
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """What is fitted, and how."""
+
+    hold: list[str] = field(default_factory=list)
+    """Shell-style patterns over parameter names that are not fitted."""
+    free: list[str] = field(default_factory=lambda: ["*"])
+    """Patterns of what may be fitted; `hold` wins."""
+    loss: str = "none"
+    start: Literal["given", "search"] = "given"
+    """"search": the zero offsets are not known, find them."""
+    extras: list[str] = field(default_factory=list)
+    seed: int = 0
+    """Of the search over starts."""
+    max_iterations: int = 200
+    known_length_mm: float = 1.0
+    """How well lengths are known before any reading: a parameter determined worse than this is called weak."""
+    known_angle_rad: float = 0.01
+    """The same for angles."""
+
+
+@dataclass
+class Study:
+    """What to fit to what."""
+
+    path: Path | None
+    arm: Arm
+    readings: list[Readings]
+    """One per artefact that was touched."""
+    noise: Noise | None = None
+    fit: FitOptions = field(default_factory=FitOptions)
+    files: list[InputFile] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    """Remarks made while reading; also issued as InputWarning."""
+
+    @classmethod
+    def load(cls, path: str | Path) -> Study:
+        """Read a study file (`ulna-study/1`) and all that it names. Raises UlnaInputError; warns with InputWarning."""
+        from ulna.files.study import load_study  # the door to the files stands here for the user
+
+        return load_study(Path(path))
+
+    @property
+    def label(self) -> str:
+        """How messages call this study."""
+        return "study" if self.path is None else str(self.path)
+
+    def hold_mask(self) -> Bool:
+        """(parameters,) true where not fitted: all but `free`, and `hold`. A pattern of nothing raises UlnaInputError."""
+        names = self.arm.parameter_names
+        free = np.zeros(len(names), dtype=bool)
+        for value, patterns, key in ((True, self.fit.free, "fit.free"), (False, self.fit.hold, "fit.hold")):
+            for pattern in patterns:
+                hits = np.array([fnmatch.fnmatchcase(name, pattern) for name in names], dtype=bool)
+                if not hits.any():
+                    raise UlnaInputError(
+                        f"{self.label}: key '{key}': the pattern '{pattern}' matches no parameter of arm "
+                        f"'{self.arm.name}'; expected a name such as joint.1.theta0 or a pattern such as joint.6.*."
+                        f"{nearest(pattern, names)}"
+                    )
+                free[hits] = value
+        return ~free
+
+    def problem(self) -> _core.Problem:
+        """The readings in the compiled core: group k is ``readings[k]``. Raises UlnaInputError."""
+        from ulna import _core
+
+        noise = self.noise or Noise()
+        try:
+            problem = _core.Problem(self.arm.core, noise.encoder_rad, noise.seat_mm)
+            for group in self.readings:
+                self._add(problem, group)
+        except _core.UlnaError as error:
+            raise UlnaInputError(f"{self.label}: {error}") from None
+        return problem
+
+    def _add(self, problem: _core.Problem, group: Readings) -> None:
+        artefact = group.artefact
+        q_rad = np.ascontiguousarray(group.q_rad)
+        if artefact.kind == "length":
+            assert group.p_rad is not None
+            assert group.length_mm is not None
+            p_rad = np.ascontiguousarray(group.p_rad)
+            problem.add_lengths(artefact.name, q_rad, p_rad, group.probe, group.length_mm, artefact.u_mm)
+            return
+        features_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
+        problem.add_points(
+            artefact.name,
+            features_mm,
+            artefact.frame,
+            q_rad,
+            group.probe,
+            group.feature,
+            group.placement_code,
+            artefact.u_mm,
+        )
+
+    def subset(self, masks: list[Bool]) -> Study:
+        """The same study with only some rows: one mask (N,) for each of `readings`; artefacts left empty drop out."""
+        kept = [group.select(mask) for group, mask in zip(self.readings, masks, strict=True)]
+        return replace(self, readings=[group for group in kept if len(group)])
+
+    def with_arm(self, arm: Arm) -> Study:
+        """The same readings, to be explained by another arm."""
+        return replace(self, arm=arm)
