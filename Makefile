@@ -1,0 +1,95 @@
+# The one door to everything. `make` alone lists what it can do.
+# Nothing is installed outside this folder: Python packages go to .venv/, Rust output to target/.
+
+VENV := .venv
+BIN := $(VENV)/bin
+RUST_SOURCES := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# mkdocs-material announces its plans for another major version of mkdocs; ours is pinned by the lock.
+export NO_MKDOCS_2_WARNING := true
+
+.PHONY: help
+help: ## list these targets
+	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | awk -F'\t' '{printf "make %-10s %s\n", $$1, $$2}'
+
+# ---------------------------------------------------------------- build
+
+.PHONY: build
+build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bin/ulna
+
+# Every package comes from the lock file and must have the hash written there.
+$(VENV)/.locked: requirements-dev.lock
+	@python=$$(tools/prerequisites.sh build) && $$python -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.lock
+	@touch $@
+
+# Python sources are used where they stand (an editable install), so only Rust changes need a rebuild.
+$(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
+	@tools/prerequisites.sh build >/dev/null
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+.PHONY: demo
+demo: build ## calibrate the shipped example, the virtual Platinum with its bent probe; result in out/demo
+	$(BIN)/ulna calibrate examples/platinum/study.toml -o out/demo --force
+
+# ---------------------------------------------------------------- test
+
+.PHONY: test
+test: prerequisites lint types rust-test python-test docs ## the whole suite: Rust, Python, lint, types, docs
+
+.PHONY: prerequisites
+prerequisites:
+	@tools/prerequisites.sh test >/dev/null
+
+.PHONY: lint
+lint: build ## formatting and lint, Rust and Python; changes nothing
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets -- -D warnings
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+.PHONY: format
+format: build ## put Rust and Python sources into the house format
+	cargo fmt --all
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+.PHONY: types
+types: build ## mypy --strict
+	$(BIN)/mypy
+
+.PHONY: rust-test
+rust-test: build ## tests of the core, and its documentation with warnings as errors
+	cargo test --locked --release --package ulna
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --workspace --quiet
+
+.PHONY: python-test
+python-test: build ## tests through the public door
+	$(BIN)/python -m pytest -n 2
+
+.PHONY: docs
+docs: build ## build the documentation into site/, strict
+	$(BIN)/mkdocs build --strict --quiet
+
+# ---------------------------------------------------------------- measure and regenerate
+
+.PHONY: bench
+bench: build ## time the core and the peers that are installed, side by side; writes docs/benchmarks/results.md
+	$(BIN)/python -m benchmarks
+
+.PHONY: example-data
+example-data: build ## make the readings of examples/platinum anew (fixed seed: nothing changes unless the generator did)
+	$(BIN)/python examples/platinum/generate.py
+
+.PHONY: lock
+lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
+	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }
+	UV_CUSTOM_COMPILE_COMMAND="make lock" uv pip compile --quiet --upgrade --universal --python-version 3.11 \
+		--generate-hashes --group dev pyproject.toml --output-file requirements-dev.lock
+
+.PHONY: clean
+clean: ## remove everything that was built
+	rm -rf $(VENV) target site out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find python tests examples benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+	find python -name '*.so' -delete
