@@ -166,7 +166,7 @@ class Study:
         return "study" if self.path is None else str(self.path)
 
     def hold_mask(self) -> Bool:
-        """(parameters,) true where not fitted: all but `free`, and `hold`. A pattern of nothing raises UlnaInputError."""
+        """(parameters,) true where not fitted: all but `free`, and `hold`. Raises UlnaInputError for a vain pattern."""
         names = self.arm.parameter_names
         free = np.zeros(len(names), dtype=bool)
         for value, patterns, key in ((True, self.fit.free, "fit.free"), (False, self.fit.hold, "fit.hold")):

@@ -1,0 +1,120 @@
+"""Writing results whole or not at all: what is there after a crash is what was there before."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from ulna.errors import UlnaInputError
+
+
+def check_output(folder: Path, names: Sequence[str], force: bool = False) -> None:
+    """Whether `names` may be written into `folder`, asked before the long work. Raises UlnaInputError.
+
+    Names must stay in the folder; files that exist are refused without `force`.
+    """
+    for name in names:
+        if Path(name).name != name or name in ("", ".", ".."):
+            raise UlnaInputError(f"{folder}: the result name {name!r} leaves the folder; expected a plain file name.")
+    if folder.exists() and not folder.is_dir():
+        raise UlnaInputError(f"{folder}: this is a file; expected an output folder. Name another folder with -o.")
+    for name in names:
+        if (folder / name).is_dir():
+            raise UlnaInputError(f"{folder / name}: a folder stands where a result goes. Name another folder with -o.")
+        if (folder / name).exists() and not force:
+            raise UlnaInputError(
+                f"{folder / name}: exists already and is not overwritten. Name another folder with -o, or give --force."
+            )
+
+
+@contextmanager
+def output_folder(folder: str | Path, names: Sequence[str], force: bool = False) -> Iterator[Path]:
+    """A staging folder to write `names` into; they appear in `folder` together when the block ends without an error.
+
+    A folder that exists keeps its other files. Raises UlnaInputError as `check_output`, or where it cannot be written.
+    """
+    folder = Path(folder)
+    check_output(folder, names, force)
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", suffix=".partial", dir=folder.parent))
+    except OSError as error:
+        raise _unwritable(folder, error) from None
+    try:
+        yield staging
+        absent = [name for name in names if not (staging / name).is_file()]
+        if absent:
+            raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
+        try:
+            _move_all(staging, folder, names)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
+def _move_all(staging: Path, folder: Path, names: Sequence[str]) -> None:
+    if not folder.exists():
+        staging.chmod(0o777 & ~_umask())  # a temporary folder is private; a result is as public as its maker's others
+        staging.replace(folder)
+        return
+    kept = staging / ".before"
+    kept.mkdir()
+    moved: list[str] = []
+    try:
+        for name in names:
+            if (folder / name).exists():
+                (folder / name).replace(kept / name)
+            moved.append(name)
+            (staging / name).replace(folder / name)
+    except BaseException:
+        for name in moved:  # back to what was there before
+            (folder / name).unlink(missing_ok=True)
+            if (kept / name).exists():
+                (kept / name).replace(folder / name)
+        raise
+
+
+def write_file(path: str | Path, content: str | bytes, force: bool = False) -> None:
+    """Write one file, whole or not at all. Raises UlnaInputError where it exists and `force` is not given."""
+    path = Path(path)
+    with new_file(path, force=force) as staged:
+        staged.write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+@contextmanager
+def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
+    """A staging path to write one file to, of any size; it appears at `path` when the block ends without an error."""
+    path = Path(path)
+    if path.is_dir():
+        raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
+    if path.exists() and not force:
+        raise UlnaInputError(f"{path}: exists already and is not overwritten. Name another file, or give --force.")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=f".partial{path.suffix}", dir=path.parent)
+        os.close(handle)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+    staged = Path(name)
+    try:
+        yield staged
+        staged.chmod(0o666 & ~_umask())
+        staged.replace(path)
+    finally:
+        staged.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _unwritable(path: Path, error: OSError) -> UlnaInputError:
+    reason = error.strerror or str(error)
+    return UlnaInputError(f"{path}: cannot be written ({reason}). Choose a place where you may write.")
