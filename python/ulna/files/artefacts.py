@@ -1,0 +1,184 @@
+"""Artefact tables of a study, and the features file that one may name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import polars as pl
+from pydantic import Discriminator, Field, Tag
+
+from ulna.errors import UlnaInputError, nearest
+from ulna.files.arm import check_name
+from ulna.files.models import Strict
+from ulna.files.table import file_sha256, read_header, read_table
+from ulna.files.units import Units
+from ulna.study import Artefact, InputFile
+
+KINDS = ("bar", "seat", "points", "length")
+LATER_KINDS = ("sphere", "plane")
+
+Positive = Annotated[float, Field(gt=0)]
+Uncertainty = Annotated[float, Field(ge=0)]
+
+
+class BarTable(Strict):
+    """Two seats a known length apart: features A and B."""
+
+    kind: Literal["bar"]
+    length: Positive
+    u: Uncertainty = 0.0
+    """Standard uncertainty of the length."""
+
+
+class SeatTable(Strict):
+    """One cone or socket whose place is unknown: the feature `seat`."""
+
+    kind: Literal["seat"]
+
+
+class LengthTable(Strict):
+    """Rows that give two poses of the arm and the distance between their tips."""
+
+    kind: Literal["length"]
+    length: Positive | None = None
+    """Fills the column `length` where the file has none."""
+    u: Uncertainty = 0.0
+    """Standard uncertainty of each length."""
+
+
+def _features_kind(features: Any) -> str:
+    return "<file>" if isinstance(features, str) else "<table>"
+
+
+Coordinates = Annotated[list[float], Field(min_length=3, max_length=3)]
+Features = Annotated[
+    Annotated[str, Tag("<file>")] | Annotated[Annotated[dict[str, Coordinates], Field(min_length=1)], Tag("<table>")],
+    Discriminator(_features_kind),
+]
+
+
+class PointsTable(Strict):
+    """Features with calibrated coordinates: ball bar, ball plate, points from a laser tracker."""
+
+    kind: Literal["points"]
+    features: Features
+    """Coordinates by name, or the path of a CSV or Parquet file with columns feature, x, y, z and perhaps u."""
+    frame: Literal["free", "arm"] = "free"
+    """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
+    u: Uncertainty | None = None
+    """Standard uncertainty of each coordinate."""
+
+
+def _kind(table: Any) -> str:
+    kind = table.get("kind") if isinstance(table, dict) else getattr(table, "kind", None)
+    return f"<{kind}>"
+
+
+ArtefactTable = Annotated[
+    Annotated[BarTable, Tag("<bar>")]
+    | Annotated[SeatTable, Tag("<seat>")]
+    | Annotated[PointsTable, Tag("<points>")]
+    | Annotated[LengthTable, Tag("<length>")],
+    Discriminator(_kind),
+]
+
+
+def check_kinds(document: dict[str, Any], path: Path) -> None:
+    """The kinds of all artefacts, before the rest of the tables is looked at. Raises UlnaInputError."""
+    tables = document.get("artefact")
+    for name, table in tables.items() if isinstance(tables, dict) else ():
+        if not isinstance(table, dict):
+            continue
+        kind = table.get("kind")
+        key = f"{path}: key 'artefact.{name}.kind'"
+        if kind is None:
+            raise UlnaInputError(f"{key} is missing; expected one of {', '.join(KINDS)}. Add it.")
+        if kind in LATER_KINDS:
+            raise UlnaInputError(
+                f"{key}: got '{kind}', which comes with a later version of Ulna; expected one of {', '.join(KINDS)} "
+                "for now."
+            )
+        if kind not in KINDS:
+            raise UlnaInputError(f"{key}: got {kind!r}; expected one of {', '.join(KINDS)}.{nearest(str(kind), KINDS)}")
+
+
+def make_artefact(
+    name: str, table: ArtefactTable, units: Units, path: Path, warnings: list[str]
+) -> tuple[Artefact, InputFile | None]:
+    """An artefact in mm, and the features file that it was made from, if any. Raises UlnaInputError."""
+    check_name(name, f"artefact.{name}", path)
+    if isinstance(table, BarTable):
+        length_mm = table.length * units.mm
+        ends = {"A": (0.0, 0.0, 0.0), "B": (length_mm, 0.0, 0.0)}
+        return Artefact(name, "bar", ends, length_mm, table.u * units.mm), None
+    if isinstance(table, SeatTable):
+        return Artefact(name, "seat", {"seat": (0.0, 0.0, 0.0)}), None
+    if isinstance(table, LengthTable):
+        distance_mm = None if table.length is None else table.length * units.mm
+        return Artefact(name, "length", {}, distance_mm, table.u * units.mm), None
+    if isinstance(table.features, str):
+        return _from_file(name, table, path.parent / table.features, units, path, warnings)
+    for feature in table.features:
+        check_name(feature, f"artefact.{name}.features.{feature}", path)
+    features = {key: (x * units.mm, y * units.mm, z * units.mm) for key, (x, y, z) in table.features.items()}
+    return Artefact(name, "points", features, None, (table.u or 0.0) * units.mm, table.frame), None
+
+
+def _from_file(
+    name: str, table: PointsTable, file: Path, units: Units, path: Path, warnings: list[str]
+) -> tuple[Artefact, InputFile]:
+    header = read_header(file, "a features file (CSV with columns feature,x,y,z or feature,x,y,z,u)")
+    known = ["feature", "x", "y", "z", "u"]
+    for column in header.columns:
+        if column not in known:
+            raise UlnaInputError(f"{file}: unknown column '{column}'.{nearest(column, known)} Remove or correct it.")
+    for column in known[:4]:
+        if column not in header.columns:
+            raise UlnaInputError(
+                f"{file}: the column '{column}' is missing; the file has {', '.join(header.columns)}, expected "
+                "feature,x,y,z and perhaps u. Add it."
+            )
+    if "u" in header.columns and table.u is not None:
+        raise UlnaInputError(
+            f"{path}: key 'artefact.{name}.u': got {table.u:g}, but {file} has a column 'u' as well. Remove one of "
+            "them."
+        )
+    frame = read_table(header, lambda column: column != "feature")
+    names = frame["feature"].to_list()
+    rows: dict[str, int] = {}
+    for row, feature in enumerate(names, start=1):
+        if feature in rows:
+            raise UlnaInputError(
+                f"{file}: {header.where(row)}, column 'feature': '{feature}' stands in row {rows[feature]} already; "
+                "expected each feature once. Rename or remove one."
+            )
+        rows[feature] = row
+    if not rows:
+        raise UlnaInputError(f"{file}: there are no rows; expected one per feature. Add them.")
+    xyz_mm = (frame.select("x", "y", "z").to_numpy() * units.mm).tolist()
+    features = {feature: (x, y, z) for feature, (x, y, z) in zip(names, xyz_mm, strict=True)}
+    u_mm = (table.u or 0.0) * units.mm
+    if "u" in frame.columns:
+        u_mm = _one_uncertainty(file, frame["u"], warnings) * units.mm
+    artefact = Artefact(name, "points", features, None, u_mm, table.frame)
+    return artefact, InputFile(file, file_sha256(file), len(frame))
+
+
+def _one_uncertainty(file: Path, u: pl.Series, warnings: list[str]) -> float:
+    """The column `u` as one number, in the unit of the file: the root of its mean square."""
+    values = u.to_numpy()
+    if (values < 0).any():
+        row = int(np.argmax(values < 0))
+        raise UlnaInputError(
+            f"{file}: row {row + 1}, column 'u': got {values[row]:g}, expected a standard uncertainty of 0 or more. "
+            "Correct it."
+        )
+    mean = float(np.sqrt(np.mean(values**2)))
+    if np.ptp(values) > 1e-12 * mean:
+        warnings.append(
+            f"{file}: column 'u' goes from {values.min():g} to {values.max():g}; all features are weighted alike, "
+            f"with its root mean square {mean:g}."
+        )
+    return mean

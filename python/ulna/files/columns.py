@@ -1,0 +1,147 @@
+"""The columns of a readings file: which there may be, and which value the study gives where one is left out."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError, nearest
+from ulna.files.cells import Header
+from ulna.files.models import Strict
+
+I64 = NDArray[np.int64]
+
+NAMES = ("id", "probe", "artefact", "placement", "feature")
+
+
+def is_numeric(column: str) -> bool:
+    """Whether a column of a readings file holds numbers; the others hold names."""
+    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*", column) is not None
+
+
+def check_columns(header: Header, joints: int, arm: str, remarks: list[str]) -> None:
+    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon."""
+    for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
+        _check_angles(header, letter, joints, arm)
+    each = [f"temperature{k}" for k in range(1, joints + 1)]
+    there = [column for column in header.columns if re.fullmatch(r"temperature[0-9]+", column)]
+    if there and (sorted(there) != sorted(each) or "temperature" in header.columns):
+        raise UlnaInputError(
+            f"{header.path}: line 1: the temperature columns are {', '.join(there)}; expected one column temperature, "
+            f"or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the header."
+        )
+    known = [*NAMES, "length", "temperature"]
+    taken = {*known, *each, *(f"{letter}{k}" for letter in "qp" for k in range(1, joints + 1))}
+    strange = [column for column in header.columns if column not in taken]
+    for column in strange:
+        hint = nearest(column.lower(), known)
+        if "Did you mean" in hint:
+            raise UlnaInputError(
+                f"{header.path}: unknown column '{column}'.{hint} Rename it, or give it a name that is not so near."
+            )
+    if strange:
+        remarks.append(f"{header.path}: not used: the column{'s' * (len(strange) > 1)} {', '.join(strange)}.")
+
+
+def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
+    expected = [f"{letter}{k}" for k in range(1, joints + 1)]
+    there = [column for column in header.columns if re.fullmatch(letter + "[0-9]+", column)]
+    missing = [column for column in expected if column not in there]
+    extra = [column for column in there if column not in expected]
+    if not missing and not extra:
+        return
+    slips = [column for column in header.columns if column.lower() in missing]
+    what = f"the column '{missing[0]}' is missing" if missing else f"the column '{extra[0]}' is one too many"
+    raise UlnaInputError(
+        f"{header.path}: {what}: the file has {len(there)} columns {letter}…, arm '{arm}' has {joints} joints; "
+        f"expected {expected[0]} … {expected[-1]}. "
+        + (f"Rename '{slips[0]}'." if slips else "Name the right arm in the study, or correct the header.")
+    )
+
+
+class ReadingsEntry(Strict):
+    """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
+
+    file: str
+    """Path, relative to the study file."""
+    angle: Literal["rad", "deg", "counts"] | None = None
+    """Unit of the encoder angles; the study's angle unit where it is not given."""
+    artefact: str | None = None
+    probe: str | None = None
+    placement: str | None = None
+    feature: str | None = None
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a readings file stands in its study."""
+
+    study: Path
+    key: str
+    """`readings.2`: its table in the study."""
+    entry: ReadingsEntry
+    index: int
+    """Into `Study.files`."""
+    arm_file: Path
+
+
+def codes(
+    frame: pl.DataFrame,
+    header: Header,
+    source: Source,
+    column: Literal["artefact", "probe", "feature"],
+    known: list[str],
+    owner: str,
+    row: I64 | None = None,
+    remarks: list[str] | None = None,
+) -> I64 | int:
+    """Index into `known` of each row, or one for all rows. Raises UlnaInputError for a name that is not known."""
+    given: str | None = getattr(source.entry, column)
+    if column in frame.columns:
+        if remarks is not None:
+            remark_unused(frame, header, source, column, remarks)
+        names = frame[column]
+        strange = ~names.is_in(known)
+        if strange.any():
+            first = int(strange.arg_true()[0])
+            at = header.where(first + 1 if row is None else int(row[first]))
+            raise UlnaInputError(
+                f"{header.path}: {at}, column '{column}': got '{names[first]}', which {owner} does not have."
+                f"{nearest(names[first], known)} Correct the cell, or add the {column}."
+            )
+        return names.replace_strict(known, list(range(len(known))), return_dtype=pl.Int64).to_numpy()
+    if given is not None:
+        if given not in known:
+            raise UlnaInputError(
+                f"{source.study}: key '{source.key}.{column}': got '{given}', which {owner} does not have."
+                f"{nearest(given, known)} Correct it."
+            )
+        return known.index(given)
+    if len(known) == 1:
+        return 0
+    raise UlnaInputError(
+        f"{header.path}: there is no column '{column}', and {source.study} has no key '{source.key}.{column}'; "
+        f"expected one of {', '.join(known[:8])}{', …' if len(known) > 8 else ''} ({owner} has {len(known)}). Add the "
+        "column or the key."
+    )
+
+
+def remark_unused(frame: pl.DataFrame, header: Header, source: Source, column: str, remarks: list[str]) -> None:
+    """The study's value fills a missing column; where there is one, say that the file's own cells are used."""
+    given: str | None = getattr(source.entry, column)
+    if given is not None and bool((frame[column] != given).any()):
+        key = f"{source.study}: key '{source.key}.{column}'"
+        remark = f"{key} = '{given}' is not used: {header.path} has its own column '{column}'."
+        if remark not in remarks:
+            remarks.append(remark)
+
+
+def each_row(code: I64 | int, count: int) -> I64:
+    """(count,) where one code stands for all rows."""
+    return np.full(count, code, dtype=np.int64) if isinstance(code, int) else code

@@ -1,0 +1,71 @@
+"""Readings of one artefact from several files, as one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ulna.errors import UlnaInputError
+from ulna.study import Artefact, Readings
+
+
+def merge(parts: list[Readings], artefacts: dict[str, Artefact], study: Path) -> list[Readings]:
+    """The parts of each artefact as one, in the order in which the study declares artefacts. Raises UlnaInputError."""
+    merged: list[Readings] = []
+    for artefact in artefacts.values():
+        own = [part for part in parts if part.artefact is artefact]
+        if not own:
+            continue
+        _name_placements(own, artefact, study)
+        merged.append(own[0] if len(own) == 1 else _joined(artefact, own))
+    return merged
+
+
+def _name_placements(own: list[Readings], artefact: Artefact, study: Path) -> None:
+    unnamed = [part for part in own if part.placement[0] == ""]
+    matters = artefact.kind != "length" and artefact.frame == "free"
+    if unnamed and len(own) > 1 and matters:
+        raise UlnaInputError(
+            f"{study}: artefact '{artefact.name}' is in {len(own)} readings files, and not all of them say which "
+            "standing of it was touched; expected a column 'placement' in each, or the key 'placement' in each "
+            "[[readings]] table: the same label where the artefact was not moved in between. Add it."
+        )
+    for part in unnamed:
+        part.placement[:] = "1"
+
+
+def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
+    def of(name: str) -> Any:
+        arrays = [getattr(part, name) for part in own]
+        return None if any(array is None for array in arrays) else np.concatenate(arrays)
+
+    return Readings(
+        artefact=artefact,
+        q_rad=of("q_rad"),
+        p_rad=of("p_rad"),
+        length_mm=of("length_mm"),
+        probe=of("probe"),
+        feature=of("feature"),
+        placement=of("placement"),
+        row=of("row"),
+        file=of("file"),
+        id=of("id"),
+        temperature_c=_temperatures(own),
+    )
+
+
+def _temperatures(own: list[Readings]) -> Any:
+    """NaN where a file gives none; one column per joint where any file has that."""
+    given = [part.temperature_c for part in own if part.temperature_c is not None]
+    if not given:
+        return None
+    widths = [array.shape[1] for array in given if array.ndim == 2]
+    joined = []
+    for part in own:
+        array = np.full(len(part), np.nan) if part.temperature_c is None else part.temperature_c
+        if widths and array.ndim == 1:
+            array = np.repeat(array[:, np.newaxis], widths[0], axis=1)
+        joined.append(array)
+    return np.concatenate(joined)

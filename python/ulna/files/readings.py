@@ -1,0 +1,164 @@
+"""Readings: CSV or Parquet tables, one touch a row (or, for lengths, two poses a row), as arrays in mm and rad."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError
+from ulna.files.cells import Header
+from ulna.files.checks import check_ids, check_scale
+from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, remark_unused
+from ulna.files.table import file_sha256, read_header, read_table
+from ulna.files.units import RAD_PER, Units
+from ulna.model import Arm
+from ulna.study import Artefact, InputFile, Readings
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+WHAT = "a readings file (CSV with commas and a header q1,q2,…, or Parquet)"
+
+
+def read_readings(
+    source: Source, arm: Arm, artefacts: dict[str, Artefact], units: Units, remarks: list[str]
+) -> tuple[list[Readings], InputFile]:
+    """One file's readings, a part for each artefact in it. Raises UlnaInputError; remarks are added to."""
+    path = source.study.parent / source.entry.file
+    header = read_header(path, WHAT)
+    check_columns(header, arm.n, arm.name, remarks)
+    frame = read_table(header, is_numeric)
+    if not len(frame):
+        raise UlnaInputError(
+            f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
+        )
+    artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}")
+    parts: list[Readings] = []
+    check_ids(frame, header)
+    for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
+        chosen = list(artefacts.values())[index]
+        rows = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
+        own = frame if len(rows) == len(frame) else frame[rows]
+        parts.append(_part(own, rows + 1, chosen, header, source, arm, units, remarks))
+    return parts, InputFile(path, file_sha256(path), len(frame))
+
+
+def _part(
+    frame: pl.DataFrame,
+    row: I64,
+    artefact: Artefact,
+    header: Header,
+    source: Source,
+    arm: Arm,
+    units: Units,
+    remarks: list[str],
+) -> Readings:
+    pairs = "p1" in frame.columns
+    if pairs != (artefact.kind == "length"):
+        raise UlnaInputError(
+            f"{header.path}: {header.where(int(row[0]))}: artefact '{artefact.name}' is of kind '{artefact.kind}', "
+            "but the file "
+            + ("gives two poses a row (columns p1, …)" if pairs else "gives one pose a row (no columns p1, …)")
+            + "; expected two poses and their distance a row for kind 'length', else one. Correct the kind or the "
+            "columns."
+        )
+    factors = _angle_factors(source, arm, units)
+    q_rad = angles(frame, "q", factors)
+    check_scale(q_rad, "q", factors, source.entry.angle or units.angle, header, row)
+    p_rad = length_mm = None
+    if pairs:
+        p_rad = angles(frame, "p", factors)
+        check_scale(p_rad, "p", factors, source.entry.angle or units.angle, header, row)
+        length_mm = _lengths(frame, row, artefact, header, source, units)
+    return Readings(
+        artefact=artefact,
+        q_rad=q_rad,
+        p_rad=p_rad,
+        length_mm=length_mm,
+        probe=each_row(
+            codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row, remarks), len(row)
+        ),
+        feature=_features(frame, row, artefact, header, source, remarks),
+        placement=_placements(frame, artefact, source, header, remarks),
+        row=row,
+        file=np.full(len(row), source.index, dtype=np.int64),
+        id=frame["id"].to_numpy().astype(object) if "id" in frame.columns else None,
+        temperature_c=_temperatures(frame, arm.n),
+    )
+
+
+def angles(frame: pl.DataFrame, letter: str, factors: F64) -> F64:
+    """Columns q1 … qn (or p1 …) → (N, n) rad, column by column: one copy of the data."""
+    out = np.empty((len(frame), len(factors)))
+    for k, factor in enumerate(factors):
+        np.multiply(frame[f"{letter}{k + 1}"].to_numpy(), factor, out=out[:, k])
+    return out
+
+
+def _angle_factors(source: Source, arm: Arm, units: Units) -> F64:
+    """(n,) rad in one unit of the file."""
+    unit = source.entry.angle or units.angle
+    if unit != "counts":
+        return np.full(arm.n, RAD_PER[unit])
+    for k, joint in enumerate(arm.joints, start=1):
+        if joint.counts_per_turn is None:
+            raise UlnaInputError(
+                f"{source.arm_file}: key 'joint.{k}.counts_per_turn' is missing, but {source.study} says angle = "
+                f"\"counts\" (key '{source.key}.angle'); expected the encoder's counts in one turn. Add it for every "
+                "joint."
+            )
+    return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in arm.joints])
+
+
+def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, units: Units) -> F64:
+    if "length" not in frame.columns:
+        if artefact.length_mm is None:
+            raise UlnaInputError(
+                f"{header.path}: the column 'length' is missing; expected the distance between the two poses of each "
+                f"row, in {units.length}. Add it, or give artefact.{artefact.name}.length in {source.study}."
+            )
+        return np.full(len(frame), artefact.length_mm)
+    lengths = frame["length"].to_numpy()
+    if (lengths < 0).any():
+        first = int(np.argmax(lengths < 0))
+        raise UlnaInputError(
+            f"{header.path}: {header.where(int(row[first]))}, column 'length': got {lengths[first]:g}, expected a "
+            "distance of 0 or more. Correct it."
+        )
+    return lengths * units.mm
+
+
+def _features(
+    frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, remarks: list[str]
+) -> I64:
+    if artefact.kind == "length":
+        return np.zeros(len(frame), dtype=np.int64)
+    known = list(artefact.features)
+    return each_row(
+        codes(frame, header, source, "feature", known, f"artefact '{artefact.name}'", row, remarks), len(frame)
+    )
+
+
+def _placements(
+    frame: pl.DataFrame, artefact: Artefact, source: Source, header: Header, remarks: list[str]
+) -> NDArray[np.object_]:
+    """(N,) str. With neither column nor key the whole file is one standing; "" says so until files are merged."""
+    if "placement" not in frame.columns:
+        return np.full(len(frame), source.entry.placement or "", dtype=object)
+    remark_unused(frame, header, source, "placement", remarks)
+    # One str object for each label, shared by its rows.
+    labels = frame["placement"].unique(maintain_order=True)
+    codes = frame["placement"].replace_strict(labels, pl.int_range(len(labels), eager=True), return_dtype=pl.Int64)
+    placements: NDArray[np.object_] = np.array(labels.to_list(), dtype=object)[codes.to_numpy()]
+    return placements
+
+
+def _temperatures(frame: pl.DataFrame, joints: int) -> F64 | None:
+    if "temperature" in frame.columns:
+        return frame["temperature"].to_numpy()
+    if "temperature1" in frame.columns:
+        return angles(frame, "temperature", np.ones(joints))
+    return None

@@ -1,0 +1,171 @@
+"""Study files: `ulna-study/1`, TOML: what to fit to what."""
+
+from __future__ import annotations
+
+import warnings as python_warnings
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag
+
+from ulna.errors import InputWarning, UlnaInputError
+from ulna.files.arm import load_arm_and_hash
+from ulna.files.artefacts import ArtefactTable, check_kinds, make_artefact
+from ulna.files.checks import check_bar_ends, check_limits, check_repeats
+from ulna.files.columns import ReadingsEntry, Source
+from ulna.files.merge import merge
+from ulna.files.models import Strict, fill
+from ulna.files.readings import read_readings
+from ulna.files.toml import check_format, read_toml
+from ulna.files.units import Units
+from ulna.model import Arm
+from ulna.study import Artefact, FitOptions, InputFile, Noise, Readings, Study
+
+WHAT = 'a study file (TOML, format = "ulna-study/1")'
+
+Positive = Annotated[float, Field(gt=0)]
+
+
+def _noise_kind(encoder: Any) -> str:
+    return "<each>" if isinstance(encoder, list) else "<all>"
+
+
+class NoiseTable(Strict):
+    """Standard deviations of the readings."""
+
+    encoder: (
+        Annotated[
+            Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_noise_kind)
+        ]
+        | None
+    ) = None
+    """In the study's angle unit; one number, or one per joint."""
+    seat: Positive | None = None
+    """Of a touch, per coordinate, in the study's length unit."""
+
+
+class FitTable(Strict):
+    """What is fitted, and how."""
+
+    hold: list[str] = Field(default_factory=list)
+    """Not fitted: shell-style patterns over parameter names."""
+    free: list[str] = Field(default_factory=lambda: ["*"])
+    """What may be fitted; hold wins."""
+    loss: Literal["none", "huber", "cauchy", "tukey"] = "none"
+    start: Literal["given", "search"] = "given"
+    """"search": the zero offsets are not known, find them."""
+    extras: list[Literal["encoder-harmonics", "link-expansion", "compliance"]] = Field(default_factory=list)
+    seed: Annotated[int, Field(ge=0)] = 0
+    max_iterations: Annotated[int, Field(ge=1)] = 200
+    known_length: Positive | None = None
+    """How well lengths are known before any reading (default 1 mm); worse-determined parameters are called weak."""
+    known_angle: Positive | None = None
+    """The same for angles (default 0.01 rad)."""
+
+
+class StudyFile(Strict):
+    """What to fit to what: `ulna-study/1`."""
+
+    format: Literal["ulna-study/1"]
+    arm: str
+    """Path of the arm file, relative to the study file."""
+    units: Units
+    readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
+    artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
+    noise: NoiseTable | None = None
+    fit: FitTable = FitTable()
+
+
+def load_study(path: Path) -> Study:
+    """Read a study and all that it names. Raises UlnaInputError for the first thing that cannot be used.
+
+    What can be used with a remark is in `Study.warnings`, and is issued as InputWarning.
+    """
+    document, digest = read_toml(path, WHAT)
+    check_format(document, path, "ulna-study")
+    check_kinds(document, path)
+    file = fill(StudyFile, document, path)
+    arm_path = path.parent / file.arm
+    arm, arm_digest = load_arm_and_hash(arm_path)
+    fit = _fit(file.fit, file.units, path)
+    noise = _noise(file.noise, file.units, arm, path)
+    remarks: list[str] = []
+    files = [InputFile(path, digest, 0), InputFile(arm_path, arm_digest, 0)]
+    artefacts: dict[str, Artefact] = {}
+    for name, table in file.artefact.items():
+        artefacts[name], features_file = make_artefact(name, table, file.units, path, remarks)
+        if features_file is not None:
+            files.append(features_file)
+    readings = _readings(file, path, arm, arm_path, artefacts, files, remarks)
+    study = Study(path, arm, readings, noise, fit, files, remarks)
+    study.hold_mask()  # a pattern that matches nothing is told now, not after the work
+    for remark in remarks:
+        python_warnings.warn(remark, InputWarning, stacklevel=3)
+    return study
+
+
+def _readings(
+    file: StudyFile,
+    path: Path,
+    arm: Arm,
+    arm_path: Path,
+    artefacts: dict[str, Artefact],
+    files: list[InputFile],
+    remarks: list[str],
+) -> list[Readings]:
+    parts: list[Readings] = []
+    for number, entry in enumerate(file.readings, start=1):
+        source = Source(path, f"readings.{number}", entry, len(files), arm_path)
+        read, used = read_readings(source, arm, artefacts, file.units, remarks)
+        files.append(used)
+        parts += read
+    groups = merge(parts, artefacts, path)
+    for name in artefacts:
+        if all(group.artefact.name != name for group in groups):
+            remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
+    for group in groups:
+        check_bar_ends(group, files, path)
+        check_repeats(group, files, remarks)
+        check_limits(group, arm, files, remarks)
+    return groups
+
+
+def _noise(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Noise | None:
+    if table is None or (table.encoder is None and table.seat is None):
+        return None
+    encoder_rad = None
+    if table.encoder is not None:
+        each = table.encoder if isinstance(table.encoder, list) else [table.encoder] * arm.n
+        if len(each) != arm.n:
+            raise UlnaInputError(
+                f"{path}: key 'noise.encoder': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
+                f"'{arm.name}'. Correct it."
+            )
+        encoder_rad = np.array(each) * units.rad
+    return Noise(encoder_rad, None if table.seat is None else table.seat * units.mm)
+
+
+def _fit(table: FitTable, units: Units, path: Path) -> FitOptions:
+    if table.loss != "none":
+        raise UlnaInputError(
+            f"{path}: key 'fit.loss': got '{table.loss}', which comes with a later version of Ulna; expected 'none' "
+            "for now. Remove the key."
+        )
+    if table.extras:
+        raise UlnaInputError(
+            f"{path}: key 'fit.extras': got '{table.extras[0]}', which comes with a later version of Ulna; expected "
+            "an empty list for now. Remove the key."
+        )
+    usual = FitOptions()
+    return FitOptions(
+        hold=list(table.hold),
+        free=list(table.free),
+        loss=table.loss,
+        start=table.start,
+        extras=list(table.extras),
+        seed=table.seed,
+        max_iterations=table.max_iterations,
+        known_length_mm=usual.known_length_mm if table.known_length is None else table.known_length * units.mm,
+        known_angle_rad=usual.known_angle_rad if table.known_angle is None else table.known_angle * units.rad,
+    )
