@@ -27,10 +27,14 @@ class Header:
     path: Path
     columns: list[str]
     is_csv: bool
+    lines: int = 1
+    """Lines of the header; 0 where others' files have none."""
+    separator: str = ","
+    decimal_comma: bool = False
 
     def where(self, row: int) -> str:
         """How a message calls a data row: with its line where the file has lines."""
-        return f"row {row} (line {row + 1} of the file)" if self.is_csv else f"row {row}"
+        return f"row {row} (line {row + self.lines} of the file)" if self.is_csv else f"row {row}"
 
 
 def name_bad_cell(header: Header, numeric: Numeric) -> None:
@@ -39,8 +43,9 @@ def name_bad_cell(header: Header, numeric: Numeric) -> None:
     row = 0
     try:
         with header.path.open(encoding="utf-8-sig", newline="") as stream:
-            reader = csv.reader(stream)
-            next(reader)
+            reader = csv.reader(stream, delimiter=header.separator)
+            for _ in range(header.lines):
+                next(reader)
             blank = 0
             for row, cells in enumerate(reader, start=1):
                 if not cells:
@@ -53,7 +58,7 @@ def name_bad_cell(header: Header, numeric: Numeric) -> None:
                 if len(cells) != len(numbers):
                     _wrong_count(header, row, cells, sum(numbers))
                 for name, cell, is_number in zip(header.columns, cells, numbers, strict=True):
-                    value = number_of(cell) if is_number else 0.0
+                    value = number_of(cell, header.decimal_comma) if is_number else 0.0
                     if value is None or value - value != 0.0 or not cell.strip():
                         raise UlnaInputError(bad_cell(header, row, name, cell, numeric))
     except UnicodeDecodeError as error:
@@ -84,17 +89,17 @@ def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric)
         return (
             f"{at}: the cell is empty; expected a {'number' if numeric(column) else 'name'}. Fill it or remove the row."
         )
-    if re.fullmatch(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*", cell):
+    if not header.decimal_comma and re.fullmatch(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*", cell):
         return (
             f"{at}: got '{cell}', a decimal comma; expected a number with a decimal point. Export the table again so."
         )
-    kind = "a finite number" if number_of(cell) is not None else "a number"
+    kind = "a finite number" if number_of(cell, header.decimal_comma) is not None else "a number"
     return f"{at}: got '{cell[:60]}', expected {kind}. Correct it or remove the row."
 
 
-def number_of(cell: str) -> float | None:
+def number_of(cell: str, decimal_comma: bool = False) -> float | None:
     """The number that a cell holds, in Polars' spelling of numbers."""
     try:
-        return None if "_" in cell else float(cell)
+        return None if "_" in cell else float(cell.replace(",", ".") if decimal_comma else cell)
     except ValueError:
         return None

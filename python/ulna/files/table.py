@@ -122,7 +122,15 @@ def _pieces(header: Header, numeric: Numeric, rows: int) -> Iterator[pl.DataFram
 def _scan_csv(header: Header, numeric: Numeric) -> pl.LazyFrame:
     # The names come from our own reading of the header, which forgives spaces and a byte-order mark.
     schema = {name: pl.Float64 if numeric(name) else pl.String for name in header.columns}
-    return pl.scan_csv(header.path, has_header=False, skip_rows=1, schema=schema, glob=False)
+    return pl.scan_csv(
+        header.path,
+        has_header=False,
+        skip_rows=header.lines,
+        schema=schema,
+        glob=False,
+        separator=header.separator,
+        decimal_comma=header.decimal_comma,
+    )
 
 
 def _explain(header: Header, numeric: Numeric, error: Exception) -> None:

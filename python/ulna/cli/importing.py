@@ -1,0 +1,103 @@
+"""`ulna import`: readings that others have measured, and drawings of robots, as files of Ulna."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ulna.cli.running import guard
+
+app = typer.Typer(
+    name="import",
+    help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
+    "Any other layout: write a CSV with a header q1,…,qn and, where there is a choice, probe, artefact, placement and "
+    "feature; describe the arm in an arm file (import urdf makes one of a robot's drawing); name both in a study.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Out = Annotated[Path, typer.Option("--out", "-o", help="Folder to write the study to.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
+AsParquet = Annotated[bool, typer.Option("--parquet", help="Write the readings as Parquet, not CSV.")]
+
+
+@app.command("mukca")
+@guard
+def mukca(
+    folder: Annotated[
+        Path, typer.Argument(help="A robot's folder: one folder per place of the tool, with hole_0.csv.")
+    ],
+    out: Out,
+    urdf: Annotated[
+        Path | None, typer.Option(help="The robot's drawing, where the folder's name says nothing.")
+    ] = None,
+    tip_link: Annotated[str | None, typer.Option(help="The link of the drawing whose origin is the ball.")] = None,
+    length: Annotated[float, typer.Option(min=1e-6, help="Distance between the two sockets, mm.")] = 50.0,
+    parquet: AsParquet = False,
+    drop_copies: Annotated[bool, typer.Option("--drop-copies", help="Leave out rows that repeat another.")] = False,
+    force: Force = False,
+) -> None:
+    """A robot that touched two sockets a known distance apart, in several places.
+
+    Example: ulna import mukca kinematics_calibration/panda_1 -o panda_1
+    """
+    from ulna.importers.mukca import import_mukca
+
+    counts = import_mukca(folder, out, urdf, tip_link, length, parquet, drop_copies, force)
+    places = ", ".join(f"{name} {count}" for name, count in counts.items())
+    _say(f"{out}: {sum(counts.values())} readings in {len(counts)} placements ({places}).")
+    _say(f"Next: ulna cross-validate {out / 'study.toml'} --by placement")
+
+
+@app.command("ipa-ur10")
+@guard
+def ipa_ur10(
+    file: Annotated[
+        Path, typer.Argument(help="The table: semicolons, decimal commas, joint angles and tracker positions.")
+    ],
+    out: Out,
+    fit: Annotated[
+        int | None, typer.Option(min=1, help="How many rows to fit; the rest is held out. Default: all.")
+    ] = None,
+    every: Annotated[int, typer.Option(min=1, help="Fit every k-th row only.")] = 1,
+    parquet: AsParquet = False,
+    force: Force = False,
+) -> None:
+    """A UR10 whose flange a laser tracker followed; rows that are not fitted become held-out.toml.
+
+    Example: ulna import ipa-ur10 Series_B/measurements_joint_configurations.csv -o ur10 --fit 300
+    """
+    from ulna.importers.ipa import import_ipa_ur10
+
+    fitted, held_out = import_ipa_ur10(file, out, fit, every, parquet, force)
+    _say(f"{out}: {fitted} readings to fit (study.toml), {held_out} held out{' (held-out.toml)' * bool(held_out)}.")
+    _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
+
+
+@app.command("urdf")
+@guard
+def urdf(
+    file: Annotated[Path, typer.Argument(help="The robot's drawing (URDF).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Arm file to write.")],
+    tip_link: Annotated[
+        str | None, typer.Option(help="The link whose origin is the ball; default: the last one.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """A robot's drawing as an arm file, to be named in a study of your own readings.
+
+    Example: ulna import urdf iiwa14.urdf -o arm.toml --tip-link tool0
+    """
+    from ulna.importers.urdf import arm_from_chain, read_chain
+
+    name, steps = read_chain(file, tip_link)
+    arm = arm_from_chain(name, steps, file)
+    arm.save(out, force=force)
+    _say(f"{out}: '{arm.name}', {arm.n} joints, probe 'ball'.")
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr)

@@ -1,0 +1,98 @@
+"""Readings in the layout of ipa-robot-accuracy (github christianlandgraf): a UR10 measured by a laser tracker.
+
+A table with semicolons and decimal commas: six joint angles in rad, the target's position in mm in the tracker's frame,
+the temperature. Every reading touched a point of its own, whose coordinates the tracker gives: an artefact of kind
+`points` with as many features as readings, standing once, at an unknown pose (`frame = "free"`: the tracker's place).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+
+from ulna.errors import UlnaInputError
+from ulna.files.cells import Header
+from ulna.files.table import read_table
+from ulna.files.toml import read_bytes
+from ulna.importers.folder import write_study_folder
+from ulna.importers.robots import ur10
+
+JOINTS = (
+    "shoulder_pan_joint",
+    "shoulder_lift_joint",
+    "elbow_joint",
+    "wrist_1_joint",
+    "wrist_2_joint",
+    "wrist_3_joint",
+)
+POSITION = ("measurement_x", "measurement_y", "measurement_z")
+TEMPERATURE = "measurement_temperature"
+
+WHAT = "a table with semicolons and a header shoulder_pan_joint;…;measurement_x;…"
+
+STUDY = """\
+format = "ulna-study/1"
+arm = "arm.toml"
+units = {{ length = "mm", angle = "rad" }}
+
+[[readings]]
+file = "{readings}"
+
+[artefact.tracker]              # every reading is a point of its own; the tracker's place is unknown
+kind = "points"
+features = "{points}"
+frame = "free"
+"""
+
+
+def import_ipa_ur10(
+    path: Path, out: Path, fit: int | None = None, every: int = 1, parquet: bool = False, force: bool = False
+) -> tuple[int, int]:
+    """A measurement file as a study folder `out`; returns how many readings are fitted and how many held out.
+
+    `fit` readings, every `every`-th row from the first, go into study.toml; the rest, if any, into held-out.toml.
+    Raises UlnaInputError; nothing is written then.
+    """
+    header = _header(path)
+    used = {*JOINTS, *POSITION, TEMPERATURE}
+    frame = read_table(header, lambda column: column in used)
+    fitted = np.zeros(len(frame), dtype=bool)
+    fitted[::every] = True
+    if fit is not None:
+        if fit > fitted.sum():
+            raise UlnaInputError(
+                f"{path}: there are {len(frame)} rows, of which every {every}th are {int(fitted.sum())}; expected at "
+                f"least the {fit} of --fit. Give a smaller --fit or --every."
+            )
+        fitted[np.flatnonzero(fitted)[fit:]] = False
+    names = [f"m{row}" for row in range(1, len(frame) + 1)]
+    readings = frame.select(
+        feature=pl.Series(names),
+        **{f"q{k}": pl.col(joint) for k, joint in enumerate(JOINTS, start=1)},
+        temperature=pl.col(TEMPERATURE),
+    )
+    points = frame.select(feature=pl.Series(names), x=POSITION[0], y=POSITION[1], z=POSITION[2])
+    ending = "parquet" if parquet else "csv"
+    parts = {"study": ("readings", "points", fitted)}
+    if not fitted.all():
+        parts["held-out"] = ("held-out", "held-out-points", ~fitted)
+    studies: dict[str, str] = {}
+    tables: dict[str, pl.DataFrame] = {}
+    for study, (rows, features, mask) in parts.items():
+        studies[f"{study}.toml"] = STUDY.format(readings=f"{rows}.{ending}", points=f"{features}.{ending}")
+        tables |= {f"{rows}.{ending}": readings.filter(mask), f"{features}.{ending}": points.filter(mask)}
+    write_study_folder(out, ur10(), studies, tables, force=force)
+    return int(fitted.sum()), int((~fitted).sum())
+
+
+def _header(path: Path) -> Header:
+    start = read_bytes(path, WHAT, limit=1 << 14)
+    columns = [name.strip() for name in start.split(b"\n", 1)[0].decode("utf-8-sig", "replace").split(";")]
+    for column in (*JOINTS, *POSITION, TEMPERATURE):
+        if column not in columns:
+            raise UlnaInputError(
+                f"{path}: line 1: the column '{column}' is missing; expected {WHAT}. Name the right file."
+            )
+    return Header(path, columns, is_csv=True, separator=";", decimal_comma=True)
