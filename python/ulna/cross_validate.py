@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ class CrossValidation:
 
 def cross_validate(
     study: Study,
-    by: Literal["placement", "artefact"] | int = "placement",
+    by: str | int = "placement",
     progress: Progress | None = None,
     *,
     threads: int = 0,

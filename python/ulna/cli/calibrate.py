@@ -1,0 +1,46 @@
+"""`ulna calibrate`: fit the arm to the readings."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from ulna.cli.options import Force, Json, OutFolder, Study
+from ulna.cli.running import guard
+
+
+@guard
+def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+    """Fit an arm to readings: from encoder readings to a calibrated arm.
+
+    Prints the figures before and after, the parameters with their standard uncertainties, and what the readings could
+    not determine, why, and what would help. With -o it writes result.json, arm.toml (the calibrated arm, ready to use)
+    and residuals.csv. Exit code 1 where the fit did not converge.
+
+    Example: [bold]ulna calibrate study.toml -o out[/bold]
+    """
+    import ulna
+    from ulna.cli import output
+    from ulna.files.output import check_output
+    from ulna.report.calibration import calibration_report
+    from ulna.result import FILES
+
+    if out is not None:
+        check_output(out, FILES, force)  # before the long work
+    loaded = ulna.Study.load(study)
+    with output.progress_bar() as progress:
+        result = ulna.calibrate(loaded, progress)
+    if out is not None:
+        result.save(out, force)
+    if as_json:
+        result.write_json(sys.stdout.write)
+    else:
+        output.print_renderable(*calibration_report(result))
+    if out is not None:
+        output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")
+    elif not as_json:
+        output.say("Nothing was written: give -o DIR to keep the result.")
+    if not result.fit.converged:
+        output.say(f"The fit did not converge ({result.fit.termination}): do not use these numbers.")
+        raise typer.Exit(1)

@@ -1,0 +1,37 @@
+"""`ulna evaluate`: apply an arm, unchanged, to readings."""
+
+from __future__ import annotations
+
+from ulna.cli.options import ArmFile, Force, Json, OutFolder, Study
+from ulna.cli.running import guard
+
+
+@guard
+def evaluate(arm: ArmFile, study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+    """Judge an arm, unchanged, on a study's readings: seat scatter, length error, coordinate error.
+
+    The figures come from the readings alone; where artefacts stand is fitted, the arm is not. The study's own arm only
+    tells its probes' names. With -o it writes evaluation.json and residuals.csv.
+
+    Example: [bold]ulna evaluate out/result.json fresh.toml[/bold]
+    """
+    import ulna
+    from ulna.cli import output
+    from ulna.evaluate import FILES
+    from ulna.files.output import check_output
+    from ulna.report.evaluation import evaluation_report
+
+    if out is not None:
+        check_output(out, FILES, force)
+    judged = ulna.Arm.load(arm)
+    loaded = ulna.Study.load(study)
+    with output.progress_bar() as progress:
+        evaluation = ulna.evaluate(judged, loaded, progress)
+    if out is not None:
+        evaluation.save(out, force)
+    if as_json:
+        output.print_json(evaluation.as_dict())
+    else:
+        output.print_renderable(*evaluation_report(evaluation))
+    if out is not None:
+        output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")

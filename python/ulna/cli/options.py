@@ -1,0 +1,19 @@
+"""Arguments and options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Study = Annotated[Path, typer.Argument(metavar="STUDY", help="The study file (TOML).", show_default=False)]
+ArmFile = Annotated[
+    Path, typer.Argument(metavar="ARM", help="An arm.toml, or the result.json of a calibration.", show_default=False)
+]
+OutFolder = Annotated[
+    Path | None,
+    typer.Option("-o", "--out", metavar="DIR", help="Folder to write to; without it nothing is written."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]

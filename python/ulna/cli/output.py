@@ -1,0 +1,94 @@
+"""What commands print: tables and machine forms on stdout, messages and progress on stderr."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console, RenderableType
+from rich.measure import Measurement
+from rich.table import Table
+
+Progress = Callable[[str, int, int], None]
+
+_PROGRESS_AFTER_S = 1.0
+
+
+def say(message: str) -> None:
+    """A message for the user, on stderr."""
+    print(message, file=sys.stderr)
+
+
+def print_json(document: Mapping[str, Any]) -> None:
+    """The machine form, on stdout."""
+    json.dump(document, sys.stdout, indent=1, ensure_ascii=False, allow_nan=False)
+    sys.stdout.write("\n")
+
+
+def print_renderable(*parts: RenderableType) -> None:
+    """On stdout. Where a table is wider than the terminal its lines run over: no number is ever cut or broken."""
+    console = Console(file=sys.stdout, highlight=False)
+    for part in parts:
+        width = console.width
+        if isinstance(part, Table):
+            width = max(width, Measurement.get(console, console.options.update(max_width=10_000), part).minimum)
+        Console(file=sys.stdout, highlight=False, width=width).print(part, crop=False)
+
+
+def print_names(what: str, descriptions: Mapping[str, str]) -> None:
+    """A list of names, each with what it is."""
+    table = Table(what, "what it is", box=None, pad_edge=False)
+    table.columns[0].no_wrap = True
+    for name, description in descriptions.items():
+        table.add_row(name, description)
+    print_renderable(table)
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress | None]:
+    """A bar on stderr for work that takes more than a second, where a terminal is there; else None."""
+    console = Console(file=sys.stderr)
+    if not console.is_terminal:
+        yield None
+        return
+    bar = _Bar(console)
+    try:
+        yield bar
+    finally:
+        bar.close()
+
+
+class _Bar:
+    def __init__(self, console: Console) -> None:
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+        self._began = time.monotonic()
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+        )
+        self._tasks: dict[str, Any] = {}
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        if not self._progress.live.is_started:
+            if time.monotonic() - self._began < _PROGRESS_AFTER_S:
+                return
+            self._progress.start()
+        if stage not in self._tasks:
+            for other in self._tasks.values():  # one line: the stage that is under way
+                self._progress.update(other, visible=False)
+            self._tasks[stage] = self._progress.add_task(stage, total=total or None)
+        self._progress.update(self._tasks[stage], completed=done, total=total or None)
+
+    def close(self) -> None:
+        """Leave the terminal as it was."""
+        if self._progress.live.is_started:
+            self._progress.stop()

@@ -1,0 +1,78 @@
+"""How every command runs: errors of the user as one message, warnings on stderr, exit codes, Ctrl-C."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+import sys
+import warnings
+from collections.abc import Callable
+from typing import Any, TextIO, TypeVar
+
+import typer
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+Command = TypeVar("Command", bound=Callable[..., None])
+
+
+def guard(command: Command) -> Command:
+    """A command whose errors end in a message and an exit code, never in a traceback."""
+
+    @functools.wraps(command)
+    def guarded(*args: Any, **kwargs: Any) -> None:
+        from ulna.errors import InputWarning, UlnaInputError
+
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("always", InputWarning)
+                warnings.showwarning = _show_warning
+                command(*args, **kwargs)
+            sys.stdout.flush()
+        except UlnaInputError as error:
+            _fail(str(error))
+        except KeyboardInterrupt:
+            say_interrupted()
+            raise typer.Exit(INTERRUPTED) from None
+        except BrokenPipeError:
+            # whoever read our output has seen enough; without this Python complains once more at exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        except ValueError as error:
+            if not _is_core_error(error):
+                raise
+            _fail(str(error))
+        except MemoryError:
+            _fail("not enough memory for these readings. Use fewer rows at a time or a larger machine.")
+
+    # typer would keep the line breaks of the source; paragraphs are all that is meant
+    paragraphs = (inspect.getdoc(command) or "").split("\n\n")
+    guarded.__doc__ = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    return guarded  # type: ignore[return-value]  # same signature, by functools.wraps
+
+
+def say_interrupted() -> None:
+    """What Ctrl-C is answered with."""
+    print("\nInterrupted. Nothing was written.", file=sys.stderr)
+
+
+def _fail(message: str) -> None:
+    print(f"error: {message}", file=sys.stderr)
+    raise typer.Exit(BAD_INPUT) from None
+
+
+def _is_core_error(error: ValueError) -> bool:
+    core = sys.modules.get("ulna._core")
+    return core is not None and isinstance(error, core.UlnaError)
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    print(f"warning: {message}", file=sys.stderr)

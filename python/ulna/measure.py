@@ -1,0 +1,127 @@
+"""Measure: encoder readings to points, streaming, any number of rows in bounded memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, Literal
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.files.output import new_file
+from ulna.measuring import MeasureJob
+from ulna.model import Arm
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+Angle = Literal["rad", "deg", "counts"]
+
+
+@dataclass
+class Measurement:
+    """What was measured: a table in memory, or a file."""
+
+    rows: int
+    columns: list[str]
+    """`id` and `probe` where the readings have them; `x, y, z`; `u_x, u_y, u_z` (standard uncertainties) where the
+    arm came from a result."""
+    unit: str
+    """Of the coordinates and their uncertainties."""
+    path: Path | None = None
+    table: pl.DataFrame | None = None
+    notes: list[str] = field(default_factory=list)
+    """Why uncertainties were left empty, and what to do about it."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON types only."""
+        return {
+            "format": "ulna-measurement/1",
+            "rows": self.rows,
+            "columns": self.columns,
+            "unit": self.unit,
+            "out": None if self.path is None else str(self.path),
+            "notes": self.notes,
+        }
+
+
+def measure(
+    arm: Arm | str | Path,
+    readings: str | Path,
+    probe: str | None = None,
+    out: str | Path | None = None,
+    *,
+    angle: Angle = "rad",
+    units: Literal["mm", "m", "in"] = "mm",
+    encoder_u_rad: F64 | None = None,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> Measurement:
+    """Tip positions of encoder readings (columns ``q1 … qn``; optional ``id``, ``probe``), CSV or Parquet.
+
+    `arm`: an arm, an arm file or a result. With a result come standard uncertainties: of the calibration, and of the
+    encoders where the study stated their noise (or `encoder_u_rad`, (n,), does).
+    `out`: a CSV or Parquet file (by its ending), written whole or not at all; None: the table is returned in memory.
+    Raises UlnaInputError naming the first bad cell; KeyboardInterrupt leaves nothing behind.
+    """
+    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad)
+    table = path = None
+    if out is None:
+        table = pl.concat(list(job.frames(progress)))
+    else:
+        path = Path(out)
+        with new_file(path, force=force) as staged:
+            write = _write_parquet if path.suffix.lower() == ".parquet" else _write_csv
+            write(job.frames(progress), staged)
+    return Measurement(job.rows, job.columns, job.unit, path, table, job.notes)
+
+
+def measure_to_stream(
+    arm: str | Path,
+    readings: str | Path,
+    probe: str | None,
+    file: BinaryIO,
+    *,
+    json_lines: bool = False,
+    angle: Angle = "rad",
+    units: Literal["mm", "m", "in"] = "mm",
+) -> Measurement:
+    """The same, written as CSV (or one JSON object a line) to an open file, such as stdout.
+
+    What went out cannot be taken back, so all readings are checked before the first point is written.
+    """
+    job = MeasureJob(arm, Path(readings), probe, angle, units)
+    job.check()
+    if json_lines:
+        for frame in job.frames():
+            frame.write_ndjson(file)
+    else:
+        write_csv(job.frames(), file)
+    file.flush()
+    return Measurement(job.rows, job.columns, job.unit, notes=job.notes)
+
+
+def write_csv(frames: Iterator[pl.DataFrame], file: BinaryIO) -> None:
+    """With a header; numbers in the shortest form that reads back the same."""
+    for number, frame in enumerate(frames):
+        frame.write_csv(file, include_header=number == 0)
+
+
+def _write_csv(frames: Iterator[pl.DataFrame], path: Path) -> None:
+    with path.open("wb") as file:
+        write_csv(frames, file)
+
+
+def _write_parquet(frames: Iterator[pl.DataFrame], path: Path) -> None:
+    import pyarrow.parquet
+
+    with ExitStack() as stack:
+        writer: Any = None
+        for frame in frames:
+            table = frame.to_arrow()
+            if writer is None:
+                writer = stack.enter_context(pyarrow.parquet.ParquetWriter(path, table.schema, compression="zstd"))
+            writer.write_table(table)

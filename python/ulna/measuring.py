@@ -1,0 +1,208 @@
+"""One run over a file of readings: columns checked first, then piece by piece angles, points, uncertainties."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.errors import InputWarning, UlnaInputError, nearest
+from ulna.files.arm import WHAT, arm_of_result, load_arm
+from ulna.files.cells import Header
+from ulna.files.checks import MOST_RAD
+from ulna.files.columns import check_columns
+from ulna.files.readings import WHAT as WHAT_READINGS
+from ulna.files.stream import Piece, count_rows, stream
+from ulna.files.table import read_header
+from ulna.files.toml import check_format, read_json
+from ulna.files.units import MM_PER
+from ulna.model import Arm
+from ulna.tip_uncertainty import TipUncertainty
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+_SHOWN_ROWS = 5
+
+
+class MeasureJob:
+    """One run of `measure`: knows the columns before the first row is read."""
+
+    def __init__(
+        self,
+        arm: Arm | str | Path,
+        readings: Path,
+        probe: str | None = None,
+        angle: str = "rad",
+        units: str = "mm",
+        encoder_u_rad: F64 | None = None,
+    ) -> None:
+        """Raises UlnaInputError for whatever is wrong before the first row."""
+        if isinstance(arm, Arm):
+            self.arm = arm
+        else:
+            self.arm, stated_rad = load_arm_and_noise(Path(arm))
+            encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        if units not in MM_PER:
+            raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
+        self.unit = units
+        self.header: Header = read_header(readings, WHAT_READINGS)
+        self._angle = angle
+        self._rad_per = self._angle_factors(angle)
+        self._q = [f"q{k + 1}" for k in range(self.arm.n)]
+        remarks: list[str] = []
+        check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        self._texts = [name for name in ("id", "probe") if name in self.header.columns]
+        self._probe = self._fixed_probe(probe, remarks)
+        for remark in remarks:
+            warnings.warn(remark, InputWarning, stacklevel=2)
+        self._uncertainty: TipUncertainty | None = None
+        if self.arm.uncertainty is not None:
+            self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
+        self._outside: dict[int, list[int]] = {}
+        self._outside_count: dict[int, int] = {}
+        self.rows = 0
+
+    @property
+    def columns(self) -> list[str]:
+        """Of the output."""
+        u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
+        return [*self._texts, "x", "y", "z", *u]
+
+    def check(self) -> None:
+        """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
+        cannot be taken back."""
+        for piece in stream(self.header, self._q, self._texts):
+            self._angles(piece)
+            self._probes(piece)
+        self._outside.clear()
+        self._outside_count.clear()
+
+    def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
+        """The output in pieces. Warns with InputWarning of readings outside the joints' limits."""
+        total = count_rows(self.header)
+        for piece in stream(self.header, self._q, self._texts):
+            yield self._measured(piece)
+            self.rows += len(piece)
+            if progress is not None:
+                progress("measure", self.rows, total)
+        if not self.rows:
+            raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_outside()
+
+    @property
+    def notes(self) -> list[str]:
+        """Why uncertainties were left empty; complete when `frames` are used up."""
+        return [] if self._uncertainty is None else self._uncertainty.notes
+
+    def _measured(self, piece: Piece) -> pl.DataFrame:
+        q_rad = self._angles(piece)
+        probe = self._probes(piece)
+        p_mm = self.arm.core.tip(q_rad, probe)
+        values = [p_mm]
+        if self._uncertainty is not None:
+            u_mm = np.empty_like(p_mm)
+            for k in np.unique(probe):
+                rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
+                u_mm[rows] = self._uncertainty.of(np.ascontiguousarray(q_rad[rows]), int(k))
+            values.append(u_mm)
+        numbers = np.concatenate(values, axis=1) / MM_PER[self.unit]
+        columns = dict(piece.texts)
+        for k, name in enumerate(self.columns[len(self._texts) :]):
+            columns[name] = pl.Series(name, np.ascontiguousarray(numbers[:, k]), nan_to_null=True)
+        return pl.DataFrame(columns)
+
+    def _angles(self, piece: Piece) -> F64:
+        q = piece.numbers
+        q_rad = q if self._angle == "rad" else q * self._rad_per
+        if max(q_rad.max(), -q_rad.min()) > MOST_RAD:
+            row, k = (int(at[0]) for at in np.nonzero(np.abs(q_rad) > MOST_RAD))
+            asked = {"rad": "degrees or counts", "deg": "counts", "counts": "radians or degrees"}[self._angle]
+            raise UlnaInputError(
+                f"{self.header.path}: {self.header.where(piece.before + row + 1)}, column '{self._q[k]}': got "
+                f"{q[row, k]:g} {self._angle}, more than two turns; expected angles within ±4π rad (720°). Are these "
+                f"{asked}? Say which with --angle."
+            )
+        for k, joint in enumerate(self.arm.joints):
+            if joint.limits_rad is not None:
+                low, high = joint.limits_rad
+                out = (q_rad[:, k] < low) | (q_rad[:, k] > high)
+                if out.any():
+                    rows = self._outside.setdefault(k, [])
+                    rows += (np.flatnonzero(out)[:_SHOWN_ROWS] + piece.before + 1).tolist()
+                    self._outside_count[k] = self._outside_count.get(k, 0) + int(out.sum())
+        return q_rad
+
+    def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
+        if self._probe is not None:
+            return self._probe
+        names = list(self.arm.probes)
+        column = piece.texts["probe"]
+        index = column.replace_strict(names, list(range(len(names))), default=-1, return_dtype=pl.Int64).to_numpy()
+        if (index < 0).any():
+            row = int(np.argmax(index < 0))
+            raise UlnaInputError(
+                f"{self.header.path}: {self.header.where(piece.before + row + 1)}, column 'probe': arm "
+                f"'{self.arm.name}' has no probe '{column[row]}'.{nearest(str(column[row]), names)}"
+            )
+        return np.ascontiguousarray(index)
+
+    def _fixed_probe(self, probe: str | None, remarks: list[str]) -> int | None:
+        if "probe" not in self.header.columns:
+            if probe is None and len(self.arm.probes) > 1:
+                raise UlnaInputError(
+                    f"{self.header.path}: no column 'probe', and arm '{self.arm.name}' has {len(self.arm.probes)} "
+                    f"probes; say which is on: --probe {' or --probe '.join(self.arm.probes)}."
+                )
+            return self.arm.probe_index(probe)
+        if probe is not None:
+            self.arm.probe_index(probe)
+            remarks.append(f"{self.header.path}: --probe {probe} is not used: the file has its own column 'probe'.")
+        return None
+
+    def _angle_factors(self, angle: str) -> F64:
+        if angle == "rad":
+            return np.ones(self.arm.n)
+        if angle == "deg":
+            return np.full(self.arm.n, math.pi / 180.0)
+        if angle != "counts":
+            raise UlnaInputError(
+                f"measure: angle '{angle}'; expected rad, deg or counts.{nearest(angle, ('rad', 'deg', 'counts'))}"
+            )
+        for k, joint in enumerate(self.arm.joints, start=1):
+            if joint.counts_per_turn is None:
+                raise UlnaInputError(
+                    f"arm '{self.arm.name}': key 'joint.{k}.counts_per_turn' is missing, which readings in counts "
+                    "need. Add it to the arm file."
+                )
+        return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
+
+    def _warn_outside(self) -> None:
+        for k, rows in sorted(self._outside.items()):
+            low, high = self.arm.joints[k].limits_rad or (-math.inf, math.inf)
+            count = self._outside_count[k]
+            shown = ", ".join(str(row) for row in rows[:_SHOWN_ROWS]) + (", …" if count > _SHOWN_ROWS else "")
+            warnings.warn(
+                f"{self.header.path}: column 'q{k + 1}': {count} readings outside the limits {low:g} … {high:g} rad of "
+                f"joint {k + 1} (rows {shown}). They are measured all the same; check the angles or the limits.",
+                InputWarning,
+                stacklevel=2,
+            )
+
+
+def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
+    """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
+    stated. Raises UlnaInputError."""
+    if path.suffix.lower() != ".json":
+        return load_arm(path), None
+    document, _ = read_json(path, WHAT)
+    check_format(document, path, "ulna-result")
+    arm = arm_of_result(document, path)
+    noise = (document.get("provenance") or {}).get("noise") or {}
+    encoder_rad = noise.get("encoder_rad")
+    return arm, None if encoder_rad is None else np.broadcast_to(np.array(encoder_rad, dtype=np.float64), (arm.n,))

@@ -1,0 +1,1 @@
+"""Results as tables that a metrologist reads, 80 columns wide: rich renderables, nothing printed here."""

@@ -1,0 +1,89 @@
+"""What `ulna calibrate` prints: how it ended, before and after, the parameters, what was not determined."""
+
+from __future__ import annotations
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from ulna.probes import ProbeView
+from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
+from ulna.report.figures import before_after
+from ulna.report.identification import determined_in_words, directions
+from ulna.report.tables import table
+from ulna.result import FitSummary, Parameter, Result
+
+_ENDINGS = {
+    "converged-cost": "Converged: the sum of squares no longer falls",
+    "converged-step": "Converged: the parameters no longer move",
+    "converged-gradient": "Converged: the gradient vanished",
+    "exact": "Converged: the readings are met exactly",
+    "nothing-to-fit": "Nothing to fit: every parameter is held",
+    "no-progress": "NOT converged: no step made progress",
+    "max-iterations": "NOT converged: the allowed iterations were used up",
+    "poor-minimum": "NOT converged: the fit ended in a poor minimum, and so did the search",
+}
+
+
+def calibration_report(result: Result) -> list[RenderableType]:
+    """All of `ulna calibrate`."""
+    parts: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
+    parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
+    rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
+    parts += ["", before_after("Before and after, on the fitted readings", result.before, result.after, [rms])]
+    parts += ["", parameter_table(result.parameters)]
+    parts += ["", probe_table(result.probes)]
+    return parts + directions(result.identifiability)
+
+
+def ending(fit: FitSummary) -> str:
+    """How the fit ended, and how it got there."""
+    text = f"{_ENDINGS.get(fit.termination, fit.termination)} ({fit.iterations} iterations)."
+    if fit.searched_starts:
+        reason = {
+            "asked": "as asked",
+            "poor-minimum": "because the given start ended in a poor minimum",
+        }.get(fit.search_reason, fit.search_reason)
+        text += f" Searched {fit.searched_starts} starts, {reason}."
+    if fit.folded:
+        text += f" Folded to the twin nearest the given arm: {', '.join(fit.folded)}."
+    return text
+
+
+def equations(fit: FitSummary) -> str:
+    """The counts that tell whether the fit can be trusted."""
+    placements = f" and {fit.placement_unknowns} unknowns of placements" if fit.placement_unknowns else ""
+    chi2 = "" if fit.chi2_per_dof is None else f", chi² per degree {fit.chi2_per_dof:.3f} (1: the stated noise fits)"
+    return (
+        f"{fit.readings} readings, {fit.observations} equations{placements}, "
+        f"{fit.degrees_of_freedom} degrees of freedom{chi2}."
+    )
+
+
+def parameter_table(parameters: list[Parameter]) -> RenderableType:
+    """Every parameter: start, value, standard uncertainty, unit, status."""
+    rows = []
+    for row in parameters:
+        places = decimals(row.u, row.unit)
+        rows.append(
+            (row.name, fixed(row.start, places), fixed(row.value, places), uncertainty(row.u), row.unit, row.status)
+        )
+    made = table("Parameters (u: standard uncertainty)", ("", "start", "value", "u", "unit", "status"), rows)
+    made.columns[4].justify = made.columns[5].justify = "left"
+    return made
+
+
+def probe_table(probes: list[ProbeView]) -> RenderableType:
+    """The tips in the literature's cylindrical form: x = r cos theta0, y = -r sin theta0, z = h."""
+    rows = []
+    for view in probes:
+        if view.theta0_rad is None:
+            rows.append((f"probe.{view.name}.theta0", "undefined", "undefined", "rad", "on the axis, r = 0"))
+        else:
+            theta0 = fixed(view.theta0_rad, decimals(view.u_theta0_rad, "rad"))
+            rows.append((f"probe.{view.name}.theta0", theta0, uncertainty(view.u_theta0_rad), "rad", view.status))
+        for key, value, u in (("r", view.r_mm, view.u_r_mm), ("h", view.h_mm, view.u_h_mm)):
+            shown = "undefined" if key == "r" and view.on_axis else uncertainty(u)
+            rows.append((f"probe.{view.name}.{key}", fixed(value, decimals(u, "mm")), shown, "mm", view.status))
+    made = table("The same tips, cylindrical", ("", "value", "u", "unit", "status"), rows)
+    made.columns[3].justify = made.columns[4].justify = "left"
+    return made

@@ -1,0 +1,42 @@
+"""Sensible digits: as many as the uncertainty bears, never more than the unit makes sense of."""
+
+from __future__ import annotations
+
+import math
+
+_MOST_DECIMALS = {"mm": 6, "rad": 9}
+_PLAIN_DECIMALS = {"mm": 4, "rad": 6}
+"""Where no uncertainty is known: 0.1 µm and 1 µrad."""
+
+
+def decimals(u: float | None, unit: str) -> int:
+    """Decimals that show two digits of a standard uncertainty `u`."""
+    if u is None or not u > 0.0:
+        return _PLAIN_DECIMALS[unit]
+    return min(max(1 - math.floor(math.log10(u)), 0), _MOST_DECIMALS[unit])
+
+
+def fixed(value: float, places: int) -> str:
+    """A value with that many decimals; no minus before a zero."""
+    text = f"{value:.{places}f}"
+    return text.removeprefix("-") if float(text) == 0.0 else text
+
+
+def uncertainty(u: float | None) -> str:
+    """Two digits: 0.0031, 3.1e-6; a dash where it is not known."""
+    if u is None:
+        return "–"
+    if u == 0.0:
+        return "0"
+    return small(u, 2) if u < 1e-4 else fixed(u, max(1 - math.floor(math.log10(u)), 0))
+
+
+def figure_mm(value: float) -> str:
+    """A figure in mm to 0.1 µm; what is smaller than that in powers of ten."""
+    return small(value, 2) if 0.0 < abs(value) < 5e-5 else fixed(value, 4)
+
+
+def small(value: float, digits: int) -> str:
+    """3.1e-6, without the zero that printf puts into exponents."""
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"

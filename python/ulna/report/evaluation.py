@@ -1,0 +1,20 @@
+"""What `ulna evaluate` prints."""
+
+from __future__ import annotations
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from ulna.evaluate import Evaluation
+from ulna.report.figures import overall, per_placement
+
+
+def evaluation_report(found: Evaluation) -> list[RenderableType]:
+    """Per placement, then over all."""
+    return [
+        Text(f"{found.arm.name}: {found.readings} readings, the arm unchanged."),
+        "",
+        *per_placement(found.artefacts, "-o DIR writes all of them to evaluation.json."),
+        "",
+        overall("Over all readings", found.overall),
+    ]
