@@ -74,9 +74,12 @@ docs: build ## build the documentation into site/, strict
 
 # ---------------------------------------------------------------- measure and regenerate
 
+# The peers may live in an environment of their own: make bench PEERS_PYTHON=/path/to/python (benchmarks/requirements.txt).
+PEERS_PYTHON ?= $(BIN)/python
+
 .PHONY: bench
 bench: build ## time the core and the peers that are installed, side by side; writes docs/benchmarks/results.md
-	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks --python $(PEERS_PYTHON)
 
 .PHONY: example-data
 example-data: build ## make the readings of examples/platinum anew (fixed seed: nothing changes unless the generator did)

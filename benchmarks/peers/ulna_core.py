@@ -1,0 +1,60 @@
+"""Ulna's core timed in Rust, by its own program: `cargo run --release -p ulna --example bench -- --json`."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+from benchmarks.peers import Contender, MissingPeerError, Times
+from benchmarks.tasks import FIT_LENGTHS, FORWARD_POSES, RESIDUAL_LENGTHS
+
+ROOT = Path(__file__).resolve().parents[2]
+COMMAND = [
+    "cargo",
+    "run",
+    "--locked",
+    "--quiet",
+    "--release",
+    "--package",
+    "ulna",
+    "--example",
+    "bench",
+    "--",
+    "--json",
+]
+
+
+def contender() -> Contender:
+    if shutil.which("cargo") is None:
+        raise MissingPeerError("cargo is not installed")
+    versions = json.loads(
+        subprocess.run(
+            ["cargo", "metadata", "--locked", "--no-deps", "--format-version", "1"],
+            capture_output=True,
+            text=True,
+            check=True,
+            cwd=ROOT,
+        ).stdout
+    )
+    version = next(package["version"] for package in versions["packages"] if package["name"] == "ulna")
+
+    def measure(quick: bool) -> Times:
+        done = subprocess.run(COMMAND, capture_output=True, text=True, check=False, cwd=ROOT)
+        if done.returncode != 0:
+            raise MissingPeerError(f"the bench example failed: {done.stderr.strip()[-300:]}")
+        found = json.loads(done.stdout)
+        times: Times = {
+            "forward": FORWARD_POSES / found["forward_poses_per_s"],
+            "residual_jacobian": 2 * RESIDUAL_LENGTHS / found["residual_jacobian_poses_per_s"],
+            "recalibrate": found["recalibrate_1000_s"]["1"],
+            "recalibrate_2": found["recalibrate_1000_s"]["2"],
+        }
+        times |= {f"fit_{rows}": found["fit_ms"][str(rows)] / 1000 for rows in FIT_LENGTHS}
+        return times
+
+    return Contender(
+        "Ulna, core",
+        f"ulna {version}",
+        "the Rust core called from Rust; a fit counts everything from the readings in memory to the fitted arm",
+        measure,
+    )

@@ -1,0 +1,62 @@
+"""Ulna from Python: NumPy arrays in, NumPy arrays out, through the compiled module."""
+
+import os
+import time
+
+import numpy as np
+
+from benchmarks.peers import Contender, Times
+from benchmarks.readings import ENCODER_NOISE_RAD, F64, HELD, START, TRUTH, Lengths, lengths
+from benchmarks.tasks import REPEATED_FITS, REPEATED_LENGTHS, measure_functions
+from ulna import _core
+
+
+def _arm(x: F64) -> _core.Arm:
+    links = np.append(x[:24].reshape(6, 4), np.zeros((1, 4)), axis=0)
+    theta0, alpha, a, d = (np.ascontiguousarray(column) for column in links.T)
+    hayati = np.zeros(7, dtype=np.bool_)
+    return _core.Arm(theta0, alpha, a, d, np.zeros(7), np.ones(7), hayati, ["bent"], x[24:].reshape(1, 3))
+
+
+def _problem(x: F64, data: Lengths, encoder_u_rad: F64 | None = None) -> _core.Problem:
+    problem = _core.Problem(_arm(x), encoder_u_rad, None)
+    problem.add_lengths("lengths", data.q_rad, data.p_rad, np.zeros(len(data.length_mm), np.int64), data.length_mm)
+    return problem
+
+
+HOLD = np.isin(np.arange(27), HELD)
+
+
+def _forward(x: F64, q_rad: F64) -> F64:
+    return _arm(x).tip(q_rad)
+
+
+def _fit(start: F64, data: Lengths) -> F64:
+    return _core.fit(_problem(start, data), HOLD).parameters
+
+
+def _recalibrate_s(threads: int) -> float:
+    problem = _problem(START, lengths(REPEATED_LENGTHS), np.full(7, ENCODER_NOISE_RAD))
+    since = time.perf_counter()
+    _, _, converged = _core.recalibrate(problem, HOLD, _arm(TRUTH), REPEATED_FITS, seed=1, threads=threads)
+    spent = time.perf_counter() - since
+    if not np.all(converged):
+        raise RuntimeError(f"{np.sum(~converged)} of {REPEATED_FITS} repeated fits did not converge")
+    return spent
+
+
+def contender() -> Contender:
+    def measure(quick: bool) -> Times:
+        times = measure_functions(_forward, None, _fit, quick, repeat=False)
+        times["recalibrate"] = min(_recalibrate_s(1) for _ in range(3))
+        if hasattr(os, "sched_setaffinity"):
+            os.sched_setaffinity(0, range(os.cpu_count() or 1))
+        times["recalibrate_2"] = min(_recalibrate_s(2) for _ in range(3))
+        return times
+
+    return Contender(
+        "Ulna, from Python",
+        f"ulna {_core.__version__}, kernels {_core.simd_level()}",
+        "NumPy arrays to NumPy arrays; a fit counts making the problem from the arrays and fitting it",
+        measure,
+    )
