@@ -1,0 +1,161 @@
+"""A virtual arm that is moved, touches things and reads its encoders: data with a known truth."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .chain import Array, Chain
+from .observed import Lengths, Points
+
+#: Travel of every joint of the virtual arms, rad.
+TRAVEL_RAD = np.pi
+
+
+def random_poses(arm: Chain, rng: np.random.Generator, count: int) -> Array:
+    """(count, n) encoder angles, uniform over the travel."""
+    return rng.uniform(-TRAVEL_RAD, TRAVEL_RAD, (count, arm.joints))
+
+
+def try_poses(arm: Chain, points_mm: Array, rng: np.random.Generator, probe: int = 0, tries: int = 4) -> Array:
+    """(N, n) encoder angles within the travel that put the tip on (N, 3) points, NaN where none was found.
+
+    Damped Newton from random poses; what does not arrive is tried again from elsewhere, so elbow and wrist differ from
+    touch to touch.
+    """
+    points_mm = np.atleast_2d(points_mm)
+    out = np.full((len(points_mm), arm.joints), np.nan)
+    open_rows = np.arange(len(points_mm))
+    for _ in range(tries):
+        q = random_poses(arm, rng, len(open_rows))
+        target = points_mm[open_rows]
+        for _ in range(25):
+            miss = target - arm.tip(q, probe)
+            j = arm.encoder_jacobian(q, probe)
+            damping = (1e-3 * (miss**2).sum(axis=1))[:, None, None] * np.eye(3)
+            pull = np.linalg.solve(j @ j.transpose(0, 2, 1) + damping, miss[..., None])[..., 0]
+            step = np.einsum("nki,nk->ni", j, pull)
+            q = q + step / np.maximum(1.0, abs(step).max(axis=1, keepdims=True) / 0.5)
+        there = (np.linalg.norm(target - arm.tip(q, probe), axis=1) < 1e-9) & (abs(q) <= TRAVEL_RAD).all(axis=1)
+        out[open_rows[there]] = q[there]
+        open_rows = open_rows[~there]
+        if not len(open_rows):
+            break
+    return out
+
+
+def poses_for_points(arm: Chain, points_mm: Array, rng: np.random.Generator, probe: int = 0) -> Array:
+    """The same for points that the arm surely reaches."""
+    q = try_poses(arm, points_mm, rng, probe, tries=300)
+    assert np.isfinite(q).all(), "a point is out of the virtual arm's reach"
+    return q
+
+
+def random_points(arm: Chain, rng: np.random.Generator, count: int) -> Array:
+    """(count, 3) mm: points that the arm surely reaches: it stands there in a random pose, not too near its column."""
+    points = arm.tip(random_poses(arm, rng, 20 * count))
+    far = np.linalg.norm(points, axis=1)
+    usable = points[(far > 300.0) & (far < 0.8 * far.max())]
+    return usable[:count]
+
+
+@dataclass(frozen=True)
+class Touches:
+    """How touches and readings err: standard deviations in rad per encoder and mm per coordinate."""
+
+    encoder_rad: float = 0.0
+    seat_mm: float = 0.0
+
+    def touch(self, arm: Chain, points_mm: Array, rng: np.random.Generator, probe: int = 0) -> Array:
+        """(N, n) readings: the tip sits a little beside the point, and the encoders read a little beside the pose."""
+        beside = points_mm + self.seat_mm * rng.standard_normal(np.shape(points_mm))
+        return self.read(poses_for_points(arm, beside, rng, probe), rng)
+
+    def read(self, q_rad: Array, rng: np.random.Generator) -> Array:
+        return q_rad + self.encoder_rad * rng.standard_normal(q_rad.shape)
+
+
+EXACT = Touches()
+
+
+def random_lengths(arm: Chain, rng: np.random.Generator, count: int, probe: int = 0) -> Lengths:
+    """Pairs of random poses and the true distance between their tips."""
+    q, p = random_poses(arm, rng, count), random_poses(arm, rng, count)
+    return Lengths(q, p, np.linalg.norm(arm.tip(q, probe) - arm.tip(p, probe), axis=1), probe)
+
+
+def bars(
+    arm: Chain,
+    rng: np.random.Generator,
+    count: int,
+    length_mm: float,
+    touches: Touches = EXACT,
+    each: int = 1,
+    probe: int = 0,
+) -> Points:
+    """A bar in ``count`` random places and directions, each end touched ``each`` times."""
+    first = random_points(arm, rng, 4 * count)
+    direction = rng.standard_normal(first.shape)
+    second = first + length_mm * direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    reached = np.isfinite(try_poses(arm, second, rng, probe)).all(axis=1)
+    assert reached.sum() >= count
+    ends = np.stack([first[reached], second[reached]], axis=1)[:count]  # (count, 2, 3)
+    ends = np.repeat(ends, each, axis=0)
+    q = touches.touch(arm, ends.reshape(-1, 3), rng, probe)
+    features = np.array([[0.0, 0.0, 0.0], [length_mm, 0.0, 0.0]])
+    return Points(features, q, np.tile([0, 1], len(ends)), np.repeat(np.arange(count), 2 * each), probe)
+
+
+def seats(
+    arm: Chain, rng: np.random.Generator, places: int, each: int, touches: Touches = EXACT, probe: int = 0
+) -> Points:
+    """``places`` single seats, each touched ``each`` times with other elbows and wrists."""
+    centres = np.repeat(random_points(arm, rng, places), each, axis=0)
+    q = touches.touch(arm, centres, rng, probe)
+    none = np.zeros(len(q), np.int64)
+    return Points(np.zeros((1, 3)), q, none, np.repeat(np.arange(places), each), probe)
+
+
+def coordinates(
+    arm: Chain, rng: np.random.Generator, count: int, placed: bool, touches: Touches = EXACT, probe: int = 0
+) -> Points:
+    """``count`` reference points known in the base frame (``placed`` False) or in a frame of their own (True)."""
+    q = random_poses(arm, rng, count)
+    at = arm.tip(q, probe)
+    beside = at + touches.seat_mm * rng.standard_normal(at.shape)
+    if touches.seat_mm:
+        q = poses_for_points(arm, beside, rng, probe)
+    known = at
+    if placed:
+        turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
+        known = at @ (turn * np.sign(np.linalg.det(turn))) + rng.uniform(-500, 500, 3)
+    return Points(known, touches.read(q, rng), np.arange(count), np.zeros(count, np.int64), probe, placed)
+
+
+def plate(arm: Chain, rng: np.random.Generator, count: int, touches: Touches = EXACT, probe: int = 0) -> Points:
+    """A ball plate of nine balls 100 mm apart, in ``count`` places, every ball touched once."""
+    grid = np.array([[100.0 * i, 100.0 * j, 5.0 * i * j] for i in range(3) for j in range(3)])
+    balls = []
+    for where in random_points(arm, rng, 4 * count):
+        turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
+        balls.append(grid @ (turn * np.sign(np.linalg.det(turn))).T + where)
+    reached = np.isfinite(try_poses(arm, np.concatenate(balls), rng, probe)).reshape(-1, 9 * arm.joints).all(axis=1)
+    assert reached.sum() >= count
+    q = touches.touch(arm, np.stack(balls)[reached][:count].reshape(-1, 3), rng, probe)
+    return Points(grid, q, np.tile(np.arange(9), count), np.repeat(np.arange(count), 9), probe)
+
+
+def wrong_start(arm: Chain, rng: np.random.Generator, zero_rad: float, length_mm: float) -> Chain:
+    """The arm as a drawing might know it: zero offsets off by up to ``zero_rad``, lengths by up to ``length_mm``."""
+    return replace(
+        arm,
+        theta0_rad=arm.theta0_rad + rng.uniform(-zero_rad, zero_rad, arm.theta0_rad.shape),
+        a_mm=arm.a_mm + rng.uniform(-length_mm, length_mm, arm.a_mm.shape),
+        last=arm.last + rng.uniform(-length_mm, length_mm, arm.last.shape) * ~np.array(arm.hayati),
+        tips_mm=arm.tips_mm + rng.uniform(-length_mm, length_mm, arm.tips_mm.shape),
+    )
+
+
+def nudged(arm: Chain, q_rad: Array, shift_mm: Array, probe: int = 0) -> Array:
+    """Poses (N, n) moved so that the tip moves by (N, 3) mm: one step, enough for micrometres."""
+    j = arm.encoder_jacobian(q_rad, probe)
+    return q_rad + np.einsum("nij,nj->ni", np.linalg.pinv(j), shift_mm)
