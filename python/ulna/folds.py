@@ -71,7 +71,7 @@ def _dealt(study: Study, count: int) -> tuple[str, list[Fold]]:
     judged was fitted, where there are placements enough for that; else single readings are dealt."""
     units, unit_count = _standings(study)
     what = "placements"
-    if unit_count < count:
+    if not 2 <= count <= unit_count:
         units, unit_count = _single_readings(study)
         what = "readings"
     if not 2 <= count <= unit_count:

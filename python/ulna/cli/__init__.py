@@ -11,6 +11,7 @@ from ulna.cli.calibrate import calibrate
 from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
 from ulna.cli.identify import identify
+from ulna.cli.importing import app as importing
 from ulna.cli.measure import measure
 from ulna.cli.reproduce import reproduce
 from ulna.cli.running import INTERRUPTED, say_interrupted
@@ -53,6 +54,7 @@ app.command("evaluate")(evaluate)
 app.command("measure")(measure)
 app.command("cross-validate")(cross_validate)
 app.command("reproduce")(reproduce)
+app.add_typer(importing, name="import")
 
 
 def main() -> None:

@@ -34,8 +34,8 @@ def print_renderable(*parts: RenderableType) -> None:
     console = Console(file=sys.stdout, highlight=False)
     for part in parts:
         width = console.width
-        if isinstance(part, Table):
-            width = max(width, Measurement.get(console, console.options.update(max_width=10_000), part).minimum)
+        if isinstance(part, Table) and all(column.no_wrap for column in part.columns):
+            width = max(width, Measurement.get(console, console.options.update(max_width=10_000), part).maximum)
         Console(file=sys.stdout, highlight=False, width=width).print(part, crop=False)
 
 

@@ -13,9 +13,9 @@ from ulna.report.figures import MOST_ROWS, before_after
 from ulna.report.tables import heading, listed, table
 
 _SHOWN = {
-    "seat_scatter_mean_mm": "seat scatter",
-    "length_error_mean_abs_mm": "length error",
-    "coordinate_error_mean_mm": "coord. error",
+    "seat_scatter_mean_mm": "seat",
+    "length_error_mean_abs_mm": "length",
+    "coordinate_error_mean_mm": "coord.",
 }
 
 
@@ -25,7 +25,7 @@ def cross_validation_report(found: CrossValidation) -> list[RenderableType]:
     columns = [name for name in _SHOWN if name in present]
     heads = ["left out", "readings"]
     for name in columns:
-        heads += [f"{_SHOWN[name]}\nbefore / mm", "after / mm"]
+        heads += [f"{_SHOWN[name]}\nbefore\nmm", "after\nmm"]
     rows = []
     for group in found.groups[:MOST_ROWS]:
         cells = [group.group + ("" if group.converged else " (!)"), str(group.readings)]

@@ -29,8 +29,8 @@ _SHORT = {
     "seat_scatter_mean_mm": "seat\nmean",
     "seat_scatter_max_mm": "seat\nmax",
     "length_error_mean_mm": "length\nmean",
-    "length_error_mean_abs_mm": "length\nmean size",
-    "length_error_max_abs_mm": "length\nmax size",
+    "length_error_mean_abs_mm": "length\nsize",
+    "length_error_max_abs_mm": "length\nmax",
     "coordinate_error_mean_mm": "coord.\nmean",
     "coordinate_error_max_mm": "coord.\nmax",
 }
@@ -61,7 +61,7 @@ def per_placement(entries: Sequence[PlacementFigures], everything: str) -> list[
     ):
         # one length in each placement: its signed error says all
         columns = [name for name in columns if name not in ("length_error_mean_abs_mm", "length_error_max_abs_mm")]
-    heads = ["artefact", "placement", "readings", *(f"{_SHORT[name]} / mm" for name in columns)]
+    heads = ["artefact", "placement", "readings", *(f"{_SHORT[name]}\nmm" for name in columns)]
     rows = [
         [entry.artefact, entry.placement, str(entry.readings), *(_cell(entry.figures, name) for name in columns)]
         for entry in entries[:MOST_ROWS]

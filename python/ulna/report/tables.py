@@ -12,14 +12,14 @@ from rich.text import Text
 
 
 def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> Table:
-    """A table; the first `left` columns hold words, the others numbers. A head may have two lines."""
+    """A table; the first `left` columns hold words, the others numbers. A head may have several lines."""
     made = Table(
         title=Text(title, style="bold"),
         title_justify="left",
         box=box.SIMPLE_HEAD,
         show_edge=False,
         pad_edge=False,
-        padding=(0, 1),
+        padding=(0, 1, 0, 0),
         header_style="",
     )
     for k, head in enumerate(heads):

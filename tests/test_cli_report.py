@@ -1,0 +1,176 @@
+"""The tables: sensible digits, and nothing wrapped or cut at 80 and 120 columns."""
+
+from __future__ import annotations
+
+import io
+import itertools
+from typing import Any
+
+import numpy as np
+import polars as pl
+import pytest
+from rich.console import Console
+
+from ulna.cli import output
+from ulna.cross_validate import CrossValidation, GroupFigures
+from ulna.figures import NAMES, PlacementFigures
+from ulna.identify import Identification
+from ulna.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.probes import probe_views
+from ulna.report.calibration import calibration_report
+from ulna.report.cross_validation import cross_validation_report
+from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
+from ulna.report.figures import per_placement
+from ulna.report.identification import combination
+from ulna.result import FitSummary, Parameter, Result
+
+
+def parameter(name: str, unit: str, value: float, u: float | None, status: str = "fitted") -> Parameter:
+    return Parameter(name, unit, value + 0.1, value, u, status)
+
+
+LOST: dict[str, Any] = {
+    "combination": {"joint.6.d": 1.0, "probe.straight-long.z": -1.0, "joint.6.theta0": -0.002},
+    "cause": "probe-on-axis",
+    "because": "The tip lies on the last axis.",
+    "remedy": "Measure with a probe at least 10 mm off the last axis.",
+    "frame": False,
+}
+
+
+def result() -> Result:
+    probes = {"bent": Probe(35.8, -16.5, 223.8773), "straight-long": Probe(0.0, 0.0, 238.5596)}
+    joints = tuple(Joint(0.1, -1.57, 40.0, 250.0) for _ in range(6))
+    arm = Arm("virtual Platinum", (*joints, Joint()), probes)
+    rows = []
+    for k in range(1, 7):
+        rows += [
+            parameter(f"joint.{k}.theta0", "rad", -2.2689123, 3.1e-6),
+            parameter(f"joint.{k}.alpha", "rad", -1.5707963, 2.4e-5),
+            parameter(f"joint.{k}.a", "mm", -1042.47543, 0.0031),
+            parameter(f"joint.{k}.d", "mm", 1450.123456, None, "not-determined"),
+        ]
+    for name, axis in itertools.product(probes, "xyz"):
+        rows.append(parameter(f"probe.{name}.{axis}", "mm", 123.456789, None, "held"))
+    names = [row.name for row in rows if row.u is not None]
+    covariance = ParameterCovariance(names, np.eye(len(names)), [LOST])
+    found = Identification(24, 18, names, [1.0], 0.01, ["joint.1.d"], [LOST], [])
+    fit = FitSummary("converged-cost", True, 5, 7, 1e6, 101.2, 12.3, 0.0125, 101, 303, 101, 76, 1.02, 0, "", [])
+    figures = dict.fromkeys(NAMES, 0.0123)
+    before = dict.fromkeys(NAMES, 123.4567)
+    return Result(arm, rows, covariance, found, fit, pl.DataFrame(), [], before, figures, {})
+
+
+def shown(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int, parts: list[Any]) -> str:
+    monkeypatch.setenv("COLUMNS", str(width))
+    output.print_renderable(*parts)
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_a_calibration_fits_the_terminal_with_every_row_whole(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    text = shown(capsys, monkeypatch, width, calibration_report(result()))
+    lines = text.splitlines()
+    assert max(len(line) for line in lines) <= width
+    assert "…" not in text
+    for row in result().parameters:
+        (line,) = [line for line in lines if line.startswith(row.name + " ") and row.status in line]
+        assert len(line.split()) == 6
+    assert any(
+        line.split() == ["joint.1.theta0", "-2.1689123", "-2.2689123", "3.1e-6", "rad", "fitted"] for line in lines
+    )
+    assert any(line.split() == ["joint.1.a", "-1042.3754", "-1042.4754", "0.0031", "mm", "fitted"] for line in lines)
+
+
+def test_a_table_wider_than_the_terminal_runs_over_instead_of_being_cut(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = PlacementFigures(
+        "a-very-long-name-of-an-artefact", "left-back-corner-high", "points", 12, dict.fromkeys(NAMES, 1.0)
+    )
+    text = shown(capsys, monkeypatch, 60, per_placement([entry, entry], "elsewhere"))
+    assert text.count("a-very-long-name-of-an-artefact") == 2
+    assert text.count("left-back-corner-high") == 2
+    assert "…" not in text
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_a_cross_validation_fits_the_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    figures = dict.fromkeys(NAMES, 1.2345)
+    groups = [GroupFigures(f"front_{k}", 120, figures, figures, k != 2, "converged-cost", [LOST]) for k in range(8)]
+    found = CrossValidation("placement", groups, figures, figures, {})
+    text = shown(capsys, monkeypatch, width, cross_validation_report(found))
+    assert max(len(line) for line in text.splitlines()) <= width
+    assert "front_2 (!)" in text
+    assert "probe at least 10 mm off the last axis" in " ".join(text.split())
+
+
+def test_names_are_never_markup() -> None:
+    console = Console(file=io.StringIO(), width=80)
+    console.print(*per_placement([PlacementFigures("[red]x", "[1]", "seat", 1, {})], ""))
+    assert "[red]x" in console.file.getvalue()  # type: ignore[attr-defined]
+    assert "[1]" in console.file.getvalue()  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("u", "unit", "expected"),
+    [
+        (0.0031, "mm", 4),
+        (0.012, "mm", 3),
+        (2.5, "mm", 1),
+        (250.0, "mm", 0),
+        (3.1e-6, "rad", 7),
+        (1e-14, "rad", 9),
+        (None, "mm", 4),
+    ],
+)
+def test_two_digits_of_the_uncertainty_are_shown(u: float | None, unit: str, expected: int) -> None:
+    assert decimals(u, unit) == expected
+
+
+def test_numbers_as_text() -> None:
+    assert [uncertainty(u) for u in (None, 0.0, 0.0031, 2.5, 250.0, 3.14e-6)] == [
+        "–",
+        "0",
+        "0.0031",
+        "2.5",
+        "250",
+        "3.1e-6",
+    ]
+    assert [figure_mm(x) for x in (0.0, 0.28849, 1.2e-10, -0.5)] == ["0.0000", "0.2885", "1.2e-10", "-0.5000"]
+    assert fixed(-1e-12, 4) == "0.0000"
+
+
+def test_a_combination_in_words() -> None:
+    assert combination({"joint.1.d": 1.0}) == "joint.1.d"
+    assert combination(LOST["combination"]) == (
+        "together: joint.6.d +1 mm, probe.straight-long.z −1 mm, joint.6.theta0 −0.002 rad"
+    )
+
+
+def test_the_cylindrical_view_and_its_uncertainty() -> None:
+    """x = r cos theta0, y = -r sin theta0: propagated, against a Monte Carlo draw."""
+    rng = np.random.default_rng(0)
+    arm = Arm("arm", (Joint(), Joint()), {"bent": Probe.from_cylindrical(0.43, 39.4, 223.9)})
+    names = [f"probe.bent.{axis}" for axis in "xyz"]
+    root = rng.normal(0, 0.01, (3, 3))
+    covariance = ParameterCovariance(names, root @ root.T, [])
+    (view,) = probe_views(arm, dict.fromkeys(names, "fitted"), covariance)
+    tips = arm.probes["bent"].tip_mm + rng.multivariate_normal(np.zeros(3), covariance.matrix, 200_000)
+    assert (view.theta0_rad, view.r_mm, view.h_mm) == pytest.approx((0.43, 39.4, 223.9))
+    assert view.u_r_mm == pytest.approx(np.hypot(tips[:, 0], tips[:, 1]).std(), rel=0.01)
+    assert view.u_theta0_rad == pytest.approx(np.arctan2(-tips[:, 1], tips[:, 0]).std(), rel=0.01)
+    assert view.u_h_mm == pytest.approx(tips[:, 2].std(), rel=0.01)
+
+
+def test_on_the_axis_the_cylindrical_angle_is_undefined() -> None:
+    arm = Arm("arm", (Joint(), Joint()), {"straight": Probe(0.0, 0.0, 200.0)})
+    names = [f"probe.straight.{axis}" for axis in "xyz"]
+    (view,) = probe_views(arm, dict.fromkeys(names, "fitted"), ParameterCovariance(names, np.eye(3), []))
+    assert view.on_axis
+    assert view.as_dict() | {"theta0_rad": None, "u_theta0_rad": None, "u_r_mm": None} == view.as_dict()
+    assert view.u_h_mm == pytest.approx(1.0)
