@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,10 +41,11 @@ def check_columns(header: Header, joints: int, arm: str, remarks: list[str]) -> 
     taken = {*known, *each, *(f"{letter}{k}" for letter in "qp" for k in range(1, joints + 1))}
     strange = [column for column in header.columns if column not in taken]
     for column in strange:
-        hint = nearest(column.lower(), known)
-        if "Did you mean" in hint:
+        slips = difflib.get_close_matches(column.lower(), known, n=1, cutoff=0.8)
+        if slips:
             raise UlnaInputError(
-                f"{header.path}: unknown column '{column}'.{hint} Rename it, or give it a name that is not so near."
+                f"{header.path}: unknown column '{column}'. Did you mean '{slips[0]}'? Rename it, or give it a name "
+                "that is not so near."
             )
     if strange:
         remarks.append(f"{header.path}: not used: the column{'s' * (len(strange) > 1)} {', '.join(strange)}.")

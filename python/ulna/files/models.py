@@ -32,7 +32,8 @@ def fill(model: type[Model], document: Any, path: Path) -> Model:
         details = error.errors(include_url=False)
         # An unknown key explains a missing one: 'alhpa' first, then 'alpha'.
         first = min(details, key=lambda detail: detail["type"] != "extra_forbidden")
-        more = f" ({len(details) - 1} more after this one.)" if len(details) > 1 else ""
+        count = len(details) - 1
+        more = f" {count} more problem{'s follow' if count > 1 else ' follows'}." if count else ""
         raise UlnaInputError(f"{path}: {_explain(first, model)}{more}") from None
 
 

@@ -54,10 +54,11 @@ def import_mukca(
     The arm is the drawing `urdf`, or what is known for the folder's name (panda_…; kuka_… and dinova_… from
     ../nominal_urdf). Raises UlnaInputError; nothing is written then.
     """
+    places = _places(folder)
     arm = _arm(folder, urdf, tip_link)
     pieces: list[pl.DataFrame] = []
     counts: dict[str, int] = {}
-    for place in _places(folder):
+    for place in places:
         both = [_seat(place / name, arm.n).with_columns(feature=pl.lit(seat)) for name, seat in SEATS.items()]
         table = pl.concat(both).with_columns(placement=pl.lit(place.name))
         if drop_copies:

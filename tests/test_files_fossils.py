@@ -1,0 +1,100 @@
+"""One sample of each released format, never changed again: what they say must arrive forever."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ulna import Arm, Study
+from ulna.study import Readings
+
+FOSSILS = Path(__file__).parent / "data" / "fossils"
+TURN = 2 * math.pi / 163840
+
+
+def test_arm_1() -> None:
+    arm = Arm.load(FOSSILS / "arm-1.toml")
+    assert (arm.name, arm.n, list(arm.probes)) == ("a fossil of every key", 4, ["bent", "straight 2"])
+    first, second, third, last = arm.joints
+    assert (first.name, first.sign, first.model, first.counts_per_turn) == ("shoulder", -1, "dh", 163840)
+    assert first.theta0_rad == pytest.approx(math.radians(87.2))
+    assert first.alpha_rad == pytest.approx(math.radians(-90.1))
+    assert (first.a_mm, first.d_mm) == pytest.approx((1.67 * 25.4, 5.9 * 25.4))
+    assert first.limits_rad == pytest.approx((math.radians(-170), math.radians(170)))
+    assert (second.model, second.d_mm) == ("hayati", 0.0)
+    assert second.beta_rad == pytest.approx(math.radians(0.05))
+    assert third.d_mm == pytest.approx(17.3 * 25.4)
+    assert (last.name, last.theta0_rad, last.a_mm) == ("wrist roll", 0.0, 0.0)
+    theta0_rad, r_mm, h_mm = arm.probes["bent"].cylindrical
+    assert (theta0_rad, r_mm, h_mm) == pytest.approx((math.radians(24.7), 1.55 * 25.4, 8.81 * 25.4))
+    assert arm.probes["bent"].ball_mm == pytest.approx(6.35)
+    assert arm.probes["straight 2"].tip_mm == pytest.approx(np.array([0.001, -0.002, 9.4]) * 25.4)
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return Study.load(FOSSILS / "study-1.toml")
+
+
+def _group(study: Study, name: str) -> Readings:
+    return next(group for group in study.readings if group.artefact.name == name)
+
+
+def test_study_1(study: Study) -> None:
+    assert study.warnings == []
+    assert [group.artefact.name for group in study.readings] == ["bar", "cone", "plate", "corner", "distance"]
+    assert study.noise is not None
+    assert study.noise.seat_mm == pytest.approx(0.0002 * 25.4)
+    assert study.noise.encoder_rad == pytest.approx(np.radians([0.0003, 0.0003, 0.0003, 0.0005]))
+    assert (study.fit.start, study.fit.seed, study.fit.max_iterations) == ("search", 3, 50)
+    assert study.fit.known_length_mm == pytest.approx(0.04 * 25.4)
+    assert study.fit.known_angle_rad == pytest.approx(math.radians(0.5))
+    held = [name for name, hold in zip(study.arm.parameter_names, study.hold_mask(), strict=True) if hold]
+    assert held == ["joint.1.theta0", "probe.straight 2.x", "probe.straight 2.y", "probe.straight 2.z"]
+    assert [(file.path.name, file.rows) for file in study.files] == [
+        ("study-1.toml", 0),
+        ("arm-1.toml", 0),
+        ("plate-1.csv", 3),
+        ("readings-1.csv", 4),
+        ("readings-1.parquet", 2),
+        ("lengths-1.csv", 2),
+    ]
+    assert study.problem() is not None
+
+
+def test_readings_1_csv(study: Study) -> None:
+    bar = _group(study, "bar")
+    assert bar.q_rad == pytest.approx(np.array([[1024, -2048, 4096, 512], [1124, -2148, 4196, -512]]) * TURN)
+    assert (bar.artefact.length_mm, bar.artefact.u_mm) == pytest.approx((17.4477 * 25.4, 0.0001 * 25.4))
+    assert (bar.feature.tolist(), bar.probe.tolist(), bar.row.tolist()) == ([0, 1], [0, 0], [1, 2])
+    assert bar.placement.tolist() == ["north", "north"]
+    assert bar.id is not None
+    assert bar.id.tolist() == ["r1", "r2"]
+    assert bar.temperature_c is not None
+    assert bar.temperature_c.tolist() == [[20.1, 20.2, 20.3, 20.4]] * 2
+    cone, corner = _group(study, "cone"), _group(study, "corner")
+    assert (cone.artefact.kind, cone.probe.tolist(), cone.row.tolist()) == ("seat", [1], [3])
+    assert (corner.artefact.frame, corner.feature.tolist(), corner.row.tolist()) == ("arm", [1], [4])
+    assert corner.artefact.features["c2"] == pytest.approx((4.5 * 25.4, 5.5 * 25.4, 6.5 * 25.4))
+
+
+def test_readings_1_parquet_and_plate(study: Study) -> None:
+    plate = _group(study, "plate")
+    assert plate.q_rad == pytest.approx(np.radians(np.array([[10, -10, 3, 0], [20.5, 5.25, 4, 90]])))
+    assert (plate.feature.tolist(), plate.probe.tolist()) == ([0, 2], [1, 1])
+    assert plate.placement.tolist() == ["on the table"] * 2
+    assert plate.temperature_c is not None
+    assert plate.temperature_c.tolist() == [20, 21]
+    assert plate.artefact.features["s3"] == pytest.approx((0, 4 * 25.4, 0.1 * 25.4))
+    assert plate.artefact.u_mm == pytest.approx(0.00004 * 25.4)
+
+
+def test_lengths_1(study: Study) -> None:
+    distance = _group(study, "distance")
+    assert distance.q_rad[1].tolist() == [-0.1, 0.2, -0.3, 0.4]
+    assert distance.p_rad is not None
+    assert distance.p_rad[1].tolist() == [-1.1, 1.2, -1.3, 1.4]
+    assert distance.length_mm == pytest.approx(np.full(2, 17.4477 * 25.4))
