@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
 from tests.small_study import BARS, STUDY, SmallStudy, says
+
+from ulna import UlnaInputError
+from ulna.files.table import iter_tables, read_header, read_table
 
 CELLS: dict[str, tuple[int, str, str, tuple[str, ...]]] = {
     "no number": (3, "q2", "x", ("row 3 (line 4", "column 'q2'", "got 'x'", "expected a number")),
@@ -38,6 +42,15 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "semicolons": (BARS.replace(",", ";").replace(".", ","), ("line 1", "semicolons", "decimal point")),
     "tabs": (BARS.replace(",", "\t"), ("line 1", "tabs", "expected commas")),
     "decimal commas": (BARS.replace(".", ","), ("row 1 (line 2", "8 cells, expected 5", "decimal commas?")),
+    "semicolons below": (
+        BARS.replace(",", ";").replace("q1;q2;q3;placement;feature", "q1,q2,q3,placement,feature"),
+        ("row 1 (line 2", "1 cells", "separated by semicolons?"),
+    ),
+    "latin header": (BARS.replace("feature", "länge").encode("latin-1"), ("line 1 is not UTF-8", "Save it as UTF-8")),
+    "open quote": (
+        BARS.replace(",A", ',"A', 1) + BARS.split("\n", 1)[1] * 700,
+        ("row 1", "quotation mark is not closed"),
+    ),
     "latin": (BARS.replace(",A", ",Ä").encode("latin-1"), ("not UTF-8", "0xc4", "Save it as UTF-8")),
     "sixteen bits": (BARS.encode("utf-16"), ("UTF-16", "Save it as UTF-8")),
     "workbook": (b"PK\x03\x04\x14\x00", ("Excel workbook", "Export the sheet as CSV")),
@@ -201,3 +214,42 @@ def test_two_files_of_one_artefact_must_say_which_standing(tmp_path: Path) -> No
     small.write("more.csv", BARS.replace("placement", "comment"))
     small.swap("study.toml", "[artefact.bar]", '[[readings]]\nfile = "more.csv"\nprobe = "bent"\n\n[artefact.bar]')
     says(small.error(), "artefact 'bar' is in 2 readings files", "column 'placement'", "key 'placement'")
+
+
+def test_pieces_of_a_file_name_the_bad_cell_too(tmp_path: Path) -> None:
+    path = tmp_path / "q.csv"
+    rows = [f"{k},{k}" for k in range(1000)]
+    for at, cell, fragments in (
+        (700, "7,x", ("row 701 (line 702", "column 'q2'", "got 'x'")),
+        (650, "", ("row 651 (line 652 of the file) is blank",)),
+        (999, "1,nan", ("row 1000 (line 1001", "got 'nan'")),
+    ):
+        path.write_text("\n".join(["q1,q2", *rows[:at], cell, *rows[at + 1 :]]) + "\n")
+        with pytest.raises(UlnaInputError) as caught:
+            list(iter_tables(read_header(path), lambda _: True, rows=100))
+        says(str(caught.value), f"{path}: ", *fragments)
+
+
+def test_a_parquet_file_with_a_broken_page(tmp_path: Path) -> None:
+    path = tmp_path / "q.parquet"
+    pl.DataFrame({"q1": np.random.default_rng(0).uniform(size=20000)}).write_parquet(path)
+    content = path.read_bytes()
+    path.write_bytes(content[:4] + b"\xff" * 100 + content[104:])
+    header = read_header(path)
+    for read in (read_table, lambda *about: list(iter_tables(*about))):
+        with pytest.raises(UlnaInputError) as caught:
+            read(header, lambda _: True)
+        says(str(caught.value), f"{path}: ", "expected")
+
+
+def test_a_file_that_may_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    small = SmallStudy(tmp_path)
+    opened = Path.open
+
+    def locked(path: Path, *arguments: Any, **options: Any) -> Any:
+        if path.name == "bars.csv":
+            raise PermissionError(13, "Permission denied")
+        return opened(path, *arguments, **options)
+
+    monkeypatch.setattr(Path, "open", locked)
+    says(small.error(), "bars.csv: cannot be read (Permission denied)", "a readings file", "Check its permissions")

@@ -215,9 +215,23 @@ def test_pieces_are_the_whole(tmp_path: Path) -> None:
     frame = frame.with_columns(id=pl.int_range(1000).cast(pl.String))
     frame.write_parquet(tmp_path / "a.parquet")
     frame.write_csv(tmp_path / "a.csv")
-    (tmp_path / "spaces.csv").write_text((tmp_path / "a.csv").read_text().replace(",", ", "))
+    (tmp_path / "spaces.csv").write_text((tmp_path / "a.csv").read_text().replace(",", " , "))
     for name in ("a.parquet", "a.csv", "spaces.csv"):
         header = read_header(tmp_path / name)
         pieces = list(iter_tables(header, lambda column: column != "id", rows=64))
         assert pl.concat(pieces).equals(frame), name
         assert read_table(header, lambda column: column != "id").equals(frame), name
+
+
+def test_temperatures_of_some_files_and_not_of_others(small: SmallStudy) -> None:
+    each = "".join(f"temperature{k}," for k in (1, 2, 3))
+    small.write("bars.csv", BARS.replace("q1", each + "q1", 1).replace("\n", "\n21,22,23,").removesuffix("21,22,23,"))
+    lines = BARS.replace(",2,", ",3,").splitlines()[4:]
+    small.write("one.csv", "q1,q2,q3,placement,feature,temperature\n" + "".join(f"{line},25\n" for line in lines[1:]))
+    small.write("none.csv", "q1,q2,q3,placement,feature\n" + "\n".join(lines[1:]).replace(",3,", ",4,"))
+    entries = "".join(f'[[readings]]\nfile = "{name}.csv"\nprobe = "bent"\n\n' for name in ("one", "none"))
+    small.swap("study.toml", "[artefact.bar]", entries + "[artefact.bar]")
+    group = _only(small)
+    expected = [[21, 22, 23]] * 8 + [[25] * 3] * 4 + [[np.nan] * 3] * 4
+    assert group.temperature_c is not None
+    assert np.array_equal(group.temperature_c, expected, equal_nan=True)

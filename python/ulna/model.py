@@ -151,7 +151,7 @@ class Arm:
 
     @property
     def parameter_units(self) -> list[str]:
-        """"rad" or "mm" for each of `parameter_names`."""
+        """Of each of `parameter_names`: "rad" or "mm"."""
         return self.core.parameter_units
 
     @property

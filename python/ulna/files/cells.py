@@ -67,7 +67,9 @@ def name_bad_cell(header: Header, numeric: Numeric) -> None:
             "Save it as UTF-8."
         ) from None
     except csv.Error as error:
-        raise UlnaInputError(f"{header.path}: {header.where(row + 1)}: {error}; expected {WHAT}. Correct it.") from None
+        # A cell of 131072 characters is what follows a quotation mark that nobody closes.
+        what = "a quotation mark is not closed" if "field limit" in str(error) else str(error)
+        raise UlnaInputError(f"{header.path}: {header.where(row + 1)}: {what}; expected {WHAT}. Correct it.") from None
 
 
 def _wrong_count(header: Header, row: int, cells: list[str], numbers: int) -> NoReturn:
