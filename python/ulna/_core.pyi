@@ -49,7 +49,7 @@ class Arm:
         """`joint.1.theta0, joint.1.alpha, joint.1.a, joint.1.d (or .beta) … probe.bent.x, .y, .z`; 4(n-1) + 3P."""
     @property
     def parameter_units(self) -> list[str]:
-        """"rad" or "mm" for each of `parameter_names`."""
+        """ "rad" or "mm" for each of `parameter_names`."""
     @property
     def parameters(self) -> F64: ...
     def with_parameters(self, parameters: F64) -> Arm: ...
@@ -76,7 +76,9 @@ class Arm:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
 class LostDirection(TypedDict):
-    combination: dict[str, float]  # physical units (rad, mm); the largest effect has weight 1; moving along it changes no residual
+    combination: dict[
+        str, float
+    ]  # physical units (rad, mm); the largest effect has weight 1; moving along it changes no residual
     cause: str  # "base-frame", "scale", "probe-on-axis", "probe-unused", "joint-still", "parallel-axes", "coverage"
     because: str
     remedy: str
@@ -147,7 +149,7 @@ class Fitted:
     def parameters(self) -> F64: ...
     @property
     def termination(self) -> str:
-        """"converged-cost", "converged-step", "converged-gradient", "exact", "nothing-to-fit", "no-progress",
+        """ "converged-cost", "converged-step", "converged-gradient", "exact", "nothing-to-fit", "no-progress",
         "max-iterations", "poor-minimum"."""
     @property
     def converged(self) -> bool: ...
@@ -181,7 +183,7 @@ class Fitted:
         """0: the given start was good enough."""
     @property
     def search_reason(self) -> str:
-        """"" or "asked" or "poor-minimum"."""
+        """ "" or "asked" or "poor-minimum"."""
     @property
     def folded(self) -> list[str]:
         """Which symmetries brought the found arm back near the nominal: "flip of joint 3", "mirror"."""
@@ -228,6 +230,7 @@ def recalibrate(
     seed: int = 0,
     threads: int = 1,
     progress: Progress | None = None,
+    uncertainties: bool = True,
 ) -> tuple[F64, F64, Bool]:
     """Calibrations repeated on new noise: readings are taken as exact for `truth`, the problem's stated noise is drawn
     anew for each run. Returns parameters (runs, P), standard uncertainties (runs, P; NaN where held or not determined), converged (runs,)."""

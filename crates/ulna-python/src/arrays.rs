@@ -1,0 +1,55 @@
+//! NumPy arrays as the slices the core takes.
+
+use crate::errors::UlnaError;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use std::borrow::Cow;
+
+/// A one-dimensional array as a slice, copied where it is not contiguous.
+pub fn slice<'a, T: numpy::Element + Copy>(array: &'a PyReadonlyArray1<'_, T>) -> Cow<'a, [T]> {
+    match array.as_slice() {
+        Ok(slice) => Cow::Borrowed(slice),
+        Err(_) => Cow::Owned(array.as_array().iter().copied().collect()),
+    }
+}
+
+/// A two-dimensional array as row-major numbers, copied where it is not contiguous.
+///
+/// # Errors
+/// Another number of columns than expected.
+pub fn rows<'a>(array: &'a PyReadonlyArray2<'_, f64>, columns: usize, what: &str) -> PyResult<Cow<'a, [f64]>> {
+    let view = array.as_array();
+    if view.ncols() != columns {
+        let message = format!("{what} have {} columns, expected {columns}", view.ncols());
+        return Err(UlnaError::new_err(message));
+    }
+    Ok(match view.to_slice() {
+        Some(slice) => Cow::Borrowed(slice),
+        None => Cow::Owned(view.iter().copied().collect()),
+    })
+}
+
+/// Indices that are not negative.
+///
+/// # Errors
+/// A negative one.
+pub fn indices(array: &PyReadonlyArray1<'_, i64>, what: &str) -> PyResult<Vec<usize>> {
+    let index = |&value: &i64| {
+        usize::try_from(value).map_err(|_| UlnaError::new_err(format!("{what} {value}: an index cannot be negative")))
+    };
+    array.as_array().iter().map(index).collect()
+}
+
+/// A new one-dimensional array.
+pub fn array1<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
+    PyArray1::from_slice(py, values)
+}
+
+/// A new two-dimensional array from row-major numbers.
+///
+/// # Errors
+/// Memory.
+pub fn array2(py: Python<'_>, values: Vec<f64>, columns: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let rows = if columns == 0 { 0 } else { values.len() / columns };
+    PyArray1::from_vec(py, values).reshape([rows, columns])
+}

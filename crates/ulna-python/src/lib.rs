@@ -1,0 +1,31 @@
+//! The compiled core as `ulna._core`: arrays in, arrays out. What each thing means stands in `python/ulna/_core.pyi`.
+
+mod arm;
+mod arrays;
+mod errors;
+mod fit;
+mod problem;
+mod watch;
+
+use pyo3::prelude::*;
+
+/// Which instruction set the batch kernels run on.
+#[pyfunction]
+fn simd_level() -> &'static str {
+    ulna::kinematics::batch::simd_level()
+}
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("UlnaError", module.py().get_type::<errors::UlnaError>())?;
+    module.add_class::<arm::Arm>()?;
+    module.add_class::<problem::Problem>()?;
+    module.add_class::<fit::Fitted>()?;
+    module.add_class::<fit::Identifiability>()?;
+    module.add_function(wrap_pyfunction!(simd_level, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::identify, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::recalibrate, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,225 @@
+//! Why a direction is lost, found by looking at what it does to the tip.
+
+use crate::arm::{JointModel, Unit};
+use crate::identifiability::Context;
+use crate::kinematics::{jacobian, tip_mm};
+use crate::problem::off_axis_mm;
+use nalgebra::{DMatrix, DVector, Vector3};
+
+/// Kinds of causes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// It only moves the base frame.
+    BaseFrame,
+    /// It only scales the arm.
+    Scale,
+    /// The tip lies on the last axis.
+    ProbeOnAxis,
+    /// No reading was taken with the probe.
+    ProbeUnused,
+    /// A joint was never moved.
+    JointStill,
+    /// Two successive axes are parallel.
+    ParallelAxes,
+    /// It moves the tip, but not in what was read.
+    Coverage,
+}
+
+impl Cause {
+    /// The word for it in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Cause::BaseFrame => "base-frame",
+            Cause::Scale => "scale",
+            Cause::ProbeOnAxis => "probe-on-axis",
+            Cause::ProbeUnused => "probe-unused",
+            Cause::JointStill => "joint-still",
+            Cause::ParallelAxes => "parallel-axes",
+            Cause::Coverage => "coverage",
+        }
+    }
+}
+
+/// A cause with its explanation and remedy.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Because {
+    /// Which kind.
+    pub cause: Cause,
+    /// In words.
+    pub because: String,
+    /// What would help.
+    pub remedy: String,
+}
+
+impl Because {
+    /// Whether nothing but the frame of the coordinates depends on it: no length, no shape.
+    pub fn is_frame(&self) -> bool {
+        self.cause == Cause::BaseFrame
+    }
+}
+
+/// A joint that turned less than this has not been moved, rad.
+const STILL_RAD: f64 = 1e-6;
+/// Axes closer to parallel than this are parallel, rad.
+const PARALLEL_RAD: f64 = 1e-6;
+/// A tip closer to the last axis than this part of its length is on it.
+const ON_AXIS: f64 = 1e-6;
+/// A motion explained but for this part of its size is explained.
+const EXPLAINED: f64 = 1e-7;
+
+pub(crate) fn explain(direction: &[f64], context: &Context) -> Because {
+    let takes_part: Vec<usize> = context.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
+    let joints = context.arm.joint_parameter_count();
+    let unused = |&j: &usize| j >= joints && !context.probes_used[(j - joints) / 3];
+    if takes_part.iter().all(|j| unused(j)) {
+        let probe = &context.arm.probes()[(takes_part.first().copied().unwrap_or(joints) - joints) / 3].name;
+        return Because {
+            cause: Cause::ProbeUnused,
+            because: format!("no reading was taken with probe {probe}"),
+            remedy: format!("take readings with probe {probe} (32 poses in one seat are enough once the arm is known), or hold probe.{probe}.*"),
+        };
+    }
+    let motion = Motion::new(direction, context);
+    if let Some(because) = moves_nothing(&motion, &takes_part, context) {
+        return because;
+    }
+    if motion.explained_by(false) {
+        return Because {
+            cause: Cause::BaseFrame,
+            because: "it only moves the base frame: the readings see the arm from nowhere but itself".into(),
+            remedy: "none is needed, no length depends on it; coordinates of features in the base frame (frame = \"arm\") would fix it".into(),
+        };
+    }
+    if motion.explained_by(true) {
+        return Because {
+            cause: Cause::Scale,
+            because: "it only scales the arm: no length is known in these readings".into(),
+            remedy: "add readings of a bar of known length, or hold one known length of the arm".into(),
+        };
+    }
+    if let Some(joint) = still_joint(&takes_part, context) {
+        return Because {
+            cause: Cause::JointStill,
+            because: format!("joint {} was never moved in these readings", joint + 1),
+            remedy: format!("take readings with joint {} turned over its whole travel, or hold these parameters", joint + 1),
+        };
+    }
+    Because {
+        cause: Cause::Coverage,
+        because: "it moves the tip, but not in anything that was read: the poses are too few or too much alike".into(),
+        remedy: "take readings at other places and directions, every joint turned over its travel; or hold these parameters".into(),
+    }
+}
+
+fn moves_nothing(motion: &Motion, takes_part: &[usize], context: &Context) -> Option<Because> {
+    if motion.size > EXPLAINED * motion.effort {
+        return None;
+    }
+    let joints = context.arm.joint_parameter_count();
+    let last_link = joints - 4;
+    let on_axis = |probe: &crate::arm::Probe| {
+        let length = Vector3::from(probe.tip_mm).norm();
+        off_axis_mm(probe.tip_mm) <= ON_AXIS * length.max(1.0)
+    };
+    let read_on_axis = context.arm.probes().iter().zip(context.probes_used).all(|(p, used)| !used || on_axis(p));
+    if takes_part.iter().any(|&j| j >= last_link) && read_on_axis {
+        return Some(Because {
+            cause: Cause::ProbeOnAxis,
+            because: "the tip lies on the last axis: turning the last joint moves nothing, so the direction of that axis cannot be seen".into(),
+            remedy: "measure with a probe at least 10 mm off the last axis, or with a second straight probe of another length".into(),
+        });
+    }
+    for (i, joint) in context.arm.joints().iter().enumerate() {
+        let parallel = joint.model == JointModel::Dh && joint.alpha_rad.sin().abs() < PARALLEL_RAD;
+        if parallel && takes_part.contains(&(4 * i + 3)) {
+            return Some(Because {
+                cause: Cause::ParallelAxes,
+                because: format!("the axes of joints {} and {} are parallel: an offset along one is an offset along the other", i + 1, i + 2),
+                remedy: format!("write joint {} with model = \"hayati\" (beta instead of d)", i + 1),
+            });
+        }
+    }
+    still_joint(takes_part, context).map(|joint| Because {
+        cause: Cause::JointStill,
+        because: format!("joint {} was never moved in these readings", joint + 1),
+        remedy: format!("take readings with joint {} turned over its whole travel, or hold these parameters", joint + 1),
+    })
+}
+
+/// A joint next to one of these parameters that stands still in all readings.
+fn still_joint(takes_part: &[usize], context: &Context) -> Option<usize> {
+    let joints = context.arm.joint_parameter_count();
+    let range = |i: usize| {
+        let angles = context.poses.iter().map(|(_, q)| q[i]);
+        let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), q| (low.min(q), high.max(q)));
+        high - low
+    };
+    (0..context.arm.encoders()).find(|&i| {
+        let concerns = |&j: &usize| j >= joints && i + 1 == context.arm.encoders() || j / 4 == i || j / 4 + 1 == i;
+        takes_part.iter().any(concerns) && range(i) < STILL_RAD
+    })
+}
+
+/// How the tip moves along a direction, over the poses that were read.
+struct Motion {
+    tips: Vec<Vector3<f64>>,
+    moves: Vec<Vector3<f64>>,
+    /// root mean square of the moves
+    size: f64,
+    /// the same of the parts that cancel
+    effort: f64,
+}
+
+impl Motion {
+    fn new(direction: &[f64], context: &Context) -> Motion {
+        let units = context.arm.parameter_units();
+        let (mut tips, mut moves, mut effort) = (Vec::new(), Vec::new(), 0.0);
+        for (probe, q_rad) in context.poses {
+            let jacobian = jacobian(context.arm, *probe, q_rad);
+            let mut moved = Vector3::zeros();
+            for (&j, &weight) in context.free.iter().zip(direction) {
+                let part: Vector3<f64> = jacobian.column(j) * weight;
+                moved += part;
+                effort += part.norm_squared();
+                let _ = units[j] == Unit::Rad;
+            }
+            moves.push(moved);
+            tips.push(tip_mm(context.arm, *probe, q_rad).coords);
+        }
+        let count = moves.len().max(1) as f64;
+        Motion {
+            size: (moves.iter().map(Vector3::norm_squared).sum::<f64>() / count).sqrt(),
+            effort: (effort / count).sqrt(),
+            tips,
+            moves,
+        }
+    }
+
+    /// Whether a rigid motion, or one with growth, explains all moves.
+    fn explained_by(&self, growth: bool) -> bool {
+        let columns = if growth { 7 } else { 6 };
+        let rows = 3 * self.tips.len();
+        if rows <= columns {
+            return false;
+        }
+        let reach = self.tips.iter().map(Vector3::norm).fold(f64::MIN_POSITIVE, f64::max);
+        let mut a = DMatrix::zeros(rows, columns);
+        let mut b = DVector::zeros(rows);
+        for (i, (tip, moved)) in self.tips.iter().zip(&self.moves).enumerate() {
+            for k in 0..3 {
+                let axis = Vector3::ith(k, 1.0);
+                a.fixed_view_mut::<3, 1>(3 * i, k).copy_from(&axis);
+                a.fixed_view_mut::<3, 1>(3 * i, 3 + k).copy_from(&(axis.cross(tip) / reach));
+            }
+            if growth {
+                a.fixed_view_mut::<3, 1>(3 * i, 6).copy_from(&(tip / reach));
+            }
+            b.fixed_rows_mut::<3>(3 * i).copy_from(moved);
+        }
+        let svd = a.clone().svd(true, true);
+        let Ok(solution) = svd.solve(&b, 1e-12) else {
+            return false;
+        };
+        (a * solution - &b).norm() <= EXPLAINED * b.norm()
+    }
+}

@@ -1,0 +1,81 @@
+//! What a caller can have done wrong. Every message names the thing, the value and what was expected.
+
+/// A question the core cannot answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An arm needs two joints at least.
+    #[error("an arm has {0} joint(s); at least 2 are needed, the last of which carries the probe")]
+    TooFewJoints(usize),
+    /// An arm without a probe touches nothing.
+    #[error("the arm has no probe; at least one is needed")]
+    NoProbe,
+    /// A number that must be finite is not.
+    #[error("{what} is {value}; a finite number was expected")]
+    NotFinite {
+        /// What the number is.
+        what: String,
+        /// What it was.
+        value: f64,
+    },
+    /// An array has another length than the model asks for.
+    #[error("{what} has {got} values, expected {expected}")]
+    Shape {
+        /// Which array.
+        what: String,
+        /// Its length.
+        got: usize,
+        /// The length it should have.
+        expected: usize,
+    },
+    /// An index points at a probe, feature or joint that does not exist.
+    #[error("{what} {index} does not exist; there are {count}")]
+    NoSuch {
+        /// Which kind of thing.
+        what: &'static str,
+        /// The index given.
+        index: i64,
+        /// How many there are.
+        count: usize,
+    },
+    /// A standard deviation or a length that must be positive (or not negative) is not.
+    #[error("{what} is {value}; {expected} was expected")]
+    OutOfRange {
+        /// Which quantity.
+        what: String,
+        /// What it was.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// There is nothing to fit to.
+    #[error("there are no readings")]
+    NoReadings,
+    /// The equations are fewer than the unknowns: no fit can be judged.
+    #[error(
+        "the readings give {observations} equations for {unknowns} unknowns \
+         ({parameters} parameters that these readings could determine and {placement_unknowns} of placements): \
+         take at least {missing} more readings, or hold parameters"
+    )]
+    TooFewObservations {
+        /// Scalar equations.
+        observations: usize,
+        /// Parameters and placement unknowns together.
+        unknowns: usize,
+        /// Free parameters whose columns do not vanish.
+        parameters: usize,
+        /// Unknowns of the placements.
+        placement_unknowns: usize,
+        /// How many equations are missing.
+        missing: usize,
+    },
+    /// Noise has to be drawn but none was stated.
+    #[error("the study states no noise, so none can be drawn: give [noise] encoder or seat")]
+    NoNoise,
+    /// The monitor asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// The core's result type.
+pub type Result<T> = std::result::Result<T, Error>;

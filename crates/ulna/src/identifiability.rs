@@ -1,0 +1,230 @@
+//! What the readings determine, what they do not, and why.
+
+use crate::arm::{Arm, Unit};
+use crate::causes::{Because, explain};
+use crate::decomposition::Decomposition;
+
+/// A direction that no reading sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LostDirection {
+    /// Parameters that move together (rad, mm) without any residual changing; the leading one has weight 1.
+    pub combination: Vec<(String, f64)>,
+    /// Why, and what would help.
+    pub because: Because,
+}
+
+/// A direction that the readings determine worse than a drawing would.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakDirection {
+    /// Parameters that move together (rad, mm); the leading one has weight 1.
+    pub combination: Vec<(String, f64)>,
+    /// Standard uncertainty of the leading parameter along this direction.
+    pub u: f64,
+    /// Its unit.
+    pub unit: Unit,
+    /// In words.
+    pub because: String,
+    /// What would help.
+    pub remedy: String,
+}
+
+/// How well an arm is known before it is calibrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Known {
+    /// Standard uncertainty of a length, mm.
+    pub length_mm: f64,
+    /// Standard uncertainty of an angle, rad.
+    pub angle_rad: f64,
+}
+
+impl Default for Known {
+    /// A drawing: 1 mm, 0.01 rad.
+    fn default() -> Self {
+        Known {
+            length_mm: 1.0,
+            angle_rad: 0.01,
+        }
+    }
+}
+
+/// What readings can and cannot determine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identifiability {
+    /// The free parameters.
+    pub names: Vec<String>,
+    /// How many independent combinations of them are determined.
+    pub determined: usize,
+    /// Of the Jacobian with unit columns, descending, zero for columns that vanished: one for each free parameter.
+    pub singular_values: Vec<f64>,
+    /// Smallest kept singular value over the largest.
+    pub condition: f64,
+    /// What is lost.
+    pub lost: Vec<LostDirection>,
+    /// What is determined worse than it was known before.
+    pub weak: Vec<WeakDirection>,
+    /// The lost directions as vectors over the free parameters.
+    pub lost_directions: Vec<Vec<f64>>,
+    /// For each free parameter, whether it takes part in a lost direction.
+    pub in_lost: Vec<bool>,
+}
+
+/// What the analysis needs to know of the problem.
+pub(crate) struct Context<'a> {
+    pub arm: &'a Arm,
+    pub free: &'a [usize],
+    /// probe and angles of some of the readings
+    pub poses: &'a [(usize, Vec<f64>)],
+    pub probes_used: &'a [bool],
+    pub symmetry: Option<&'a [f64]>,
+    pub known: Known,
+    /// standard deviation of a whitened residual
+    pub sigma: f64,
+}
+
+/// Weights smaller than this part of the largest, in units of effect on the readings, are rounding.
+const NEGLIGIBLE_WEIGHT: f64 = 1e-6;
+
+pub(crate) fn analyse(decomposition: &Decomposition, context: &Context) -> Identifiability {
+    let count = context.free.len();
+    let all_names = context.arm.parameter_names();
+    let names: Vec<String> = context.free.iter().map(|&j| all_names[j].clone()).collect();
+    let directions = lost_directions(decomposition, context.symmetry, count);
+    let lost: Vec<LostDirection> = directions
+        .iter()
+        .map(|direction| LostDirection {
+            combination: combination(direction, &names),
+            because: explain(direction, context),
+        })
+        .collect();
+    let mut singular_values = decomposition.singular_values.clone();
+    singular_values.resize(count, 0.0);
+    let kept = &decomposition.singular_values[..decomposition.rank];
+    Identifiability {
+        determined: decomposition.rank,
+        condition: match (kept.first(), kept.last()) {
+            (Some(largest), Some(smallest)) => smallest / largest,
+            _ => 0.0,
+        },
+        in_lost: (0..count).map(|j| directions.iter().any(|d| d[j] != 0.0)).collect(),
+        weak: weak(decomposition, context, &names),
+        lost_directions: directions,
+        singular_values,
+        lost,
+        names,
+    }
+}
+
+fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
+    let parts = names.iter().zip(direction).filter(|(_, w)| **w != 0.0);
+    parts.map(|(name, &weight)| (name.clone(), weight)).collect()
+}
+
+/// A sparse basis of what is lost, physical units over all unknowns: vanished columns one by one, a known symmetry, and
+/// the rest of the null space reduced to as few parameters as possible.
+fn lost_directions(decomposition: &Decomposition, symmetry: Option<&[f64]>, count: usize) -> Vec<Vec<f64>> {
+    let mut directions = Vec::new();
+    for j in (0..count).filter(|j| !decomposition.kept.contains(j)) {
+        let mut direction = vec![0.0; count];
+        direction[j] = 1.0;
+        directions.push(direction);
+    }
+    let kept = &decomposition.kept;
+    let n = kept.len();
+    let mut null: Vec<Vec<f64>> = (decomposition.rank..n).map(|i| decomposition.vector(i)).collect();
+    let mut reduced = Vec::new();
+    if let Some(symmetry) = symmetry {
+        let scaled: Vec<f64> = (0..n).map(|a| symmetry[kept[a]] * decomposition.norms[a]).collect();
+        let norm = scaled.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let unit: Vec<f64> = scaled.iter().map(|v| v / norm).collect();
+        // the null space holds it; what remains of each basis vector spans the rest, one vector fewer
+        let overlap = |v: &[f64]| v.iter().zip(&unit).map(|(a, b)| a * b).sum::<f64>();
+        if let Some(most) = (0..null.len()).max_by(|&a, &b| overlap(&null[a]).abs().total_cmp(&overlap(&null[b]).abs())) {
+            null.swap_remove(most);
+            for v in &mut null {
+                let along = overlap(v);
+                v.iter_mut().zip(&unit).for_each(|(a, b)| *a -= along * b);
+            }
+            reduced.push(unit);
+        }
+    }
+    reduce(&mut null);
+    reduced.extend(null);
+    for v in reduced {
+        let mut direction = vec![0.0; count];
+        let leading = (0..n).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
+        let unit = v[leading] / decomposition.norms[leading];
+        for a in (0..n).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
+            direction[kept[a]] = v[a] / decomposition.norms[a] / unit;
+        }
+        directions.push(direction);
+    }
+    directions
+}
+
+/// Gauss-Jordan with complete pivoting on the rows: each keeps one pivot that no other has.
+fn reduce(rows: &mut [Vec<f64>]) {
+    let columns = rows.first().map_or(0, Vec::len);
+    let mut used = vec![false; columns];
+    for k in 0..rows.len() {
+        let candidates = (k..rows.len()).flat_map(|r| (0..columns).map(move |c| (r, c)));
+        let free = candidates.filter(|&(_, c)| !used[c]);
+        let Some((row, pivot)) = free.max_by(|&(r, c), &(s, d)| rows[r][c].abs().total_cmp(&rows[s][d].abs())) else {
+            return;
+        };
+        used[pivot] = true;
+        rows.swap(k, row);
+        let value = rows[k][pivot];
+        rows[k].iter_mut().for_each(|v| *v /= value);
+        let pivot_row = rows[k].clone();
+        for other in (0..rows.len()).filter(|&r| r != k) {
+            let factor = rows[other][pivot];
+            rows[other].iter_mut().zip(&pivot_row).for_each(|(v, p)| *v -= factor * p);
+        }
+    }
+}
+
+/// Singular directions along which a parameter's uncertainty exceeds what was known of it before.
+fn weak(decomposition: &Decomposition, context: &Context, names: &[String]) -> Vec<WeakDirection> {
+    let units = context.arm.parameter_units();
+    let mut result = Vec::new();
+    for i in (0..decomposition.rank).rev() {
+        let factor = context.sigma / decomposition.singular_values[i];
+        let vector = decomposition.vector(i);
+        let mut u = vec![0.0; context.free.len()];
+        let mut times_known = vec![0.0; context.free.len()];
+        for (a, &j) in decomposition.kept.iter().enumerate() {
+            u[j] = factor * vector[a] / decomposition.norms[a];
+            let known = match units[context.free[j]] {
+                Unit::Rad => context.known.angle_rad,
+                Unit::Mm => context.known.length_mm,
+            };
+            times_known[j] = u[j].abs() / known;
+        }
+        let leading = (0..u.len()).max_by(|&a, &b| times_known[a].total_cmp(&times_known[b])).unwrap_or(0);
+        if u.is_empty() || times_known[leading] <= 1.0 {
+            continue;
+        }
+        let share = |&j: &usize| times_known[j] > 0.05 * times_known[leading];
+        let unit = units[context.free[leading]];
+        let known = match unit {
+            Unit::Rad => context.known.angle_rad,
+            Unit::Mm => context.known.length_mm,
+        };
+        result.push(WeakDirection {
+            combination: (0..u.len()).filter(share).map(|j| (names[j].clone(), u[j] / u[leading])).collect(),
+            u: u[leading].abs(),
+            unit,
+            because: format!(
+                "the readings determine {} only to {:.2} {}, worse than the {known} {} it is taken to be known to before",
+                names[leading],
+                u[leading].abs(),
+                unit.as_str(),
+                unit.as_str(),
+            ),
+            remedy: "hold these parameters at their nominal values, or take readings that differ more in the joints they \
+                     belong to (a straight probe: one at least 10 mm off the last axis, or a second one of another length)"
+                .into(),
+        });
+    }
+    result
+}

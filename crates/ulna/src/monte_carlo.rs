@@ -1,0 +1,108 @@
+//! Calibrations repeated on new noise: what the uncertainties say, checked against the truth.
+
+use crate::arm::Arm;
+use crate::calibrate::{Options, solve};
+use crate::covariance::covariance;
+use crate::decomposition::Decomposition;
+use crate::error::{Error, Result};
+use crate::monitor::{Monitor, Stage, Unwatched};
+use crate::problem::{Assembly, Problem};
+use crate::residuals::Model;
+use crate::solver::LeastSquares;
+use crate::solver::triangle::Triangle;
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// One calibration on its own noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// All parameters.
+    pub parameters: Vec<f64>,
+    /// Standard uncertainty of each; NaN where held or not determined.
+    pub u: Vec<f64>,
+    /// Whether the fit converged.
+    pub converged: bool,
+}
+
+/// What is repeated.
+#[derive(Debug, Clone, Copy)]
+pub struct Repeat<'a> {
+    /// The arm that the readings are exact for before noise is added.
+    pub truth: &'a Arm,
+    /// How many calibrations.
+    pub runs: usize,
+    /// Seed; run k draws from (seed, k), however the work is cut.
+    pub seed: u64,
+    /// Threads to use.
+    pub threads: usize,
+    /// Whether uncertainties are asked for as well.
+    pub uncertainties: bool,
+}
+
+/// Calibrates `runs` times, from the problem's own arm, on readings that are exact for `truth` plus newly drawn noise.
+///
+/// # Errors
+/// No stated noise, or whatever [`solve`] says of the first run that fails.
+pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: &dyn Monitor) -> Result<Vec<Run>> {
+    let noise = problem.noise().ok_or(Error::NoNoise)?;
+    let truth = Model::new(repeat.truth);
+    let done = AtomicUsize::new(0);
+    let stopped = AtomicBool::new(false);
+    let one = |run: usize| -> Result<Run> {
+        if stopped.load(Ordering::Relaxed) {
+            return Err(Error::Interrupted);
+        }
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(repeat.seed, run as u64));
+        let groups = problem.groups().iter().map(|g| g.redrawn(&truth, noise, &mut rng)).collect();
+        let mut drawn = problem.with_groups(groups);
+        let solution = solve(&mut drawn, free, &Options::default(), &Unwatched)?;
+        let u = if repeat.uncertainties {
+            uncertainties(&drawn, free, &solution.parameters)?
+        } else {
+            vec![f64::NAN; solution.parameters.len()]
+        };
+        if !monitor.progress(Stage::MonteCarlo, done.fetch_add(1, Ordering::Relaxed), repeat.runs) {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        Ok(Run {
+            parameters: solution.parameters,
+            u,
+            converged: solution.report.termination.converged(),
+        })
+    };
+    if repeat.threads <= 1 {
+        return (0..repeat.runs).map(one).collect();
+    }
+    match rayon::ThreadPoolBuilder::new().num_threads(repeat.threads).build() {
+        Ok(pool) => pool.install(|| (0..repeat.runs).into_par_iter().map(one).collect()),
+        Err(_) => (0..repeat.runs).map(one).collect(),
+    }
+}
+
+/// Standard uncertainty of every parameter; NaN where held or not determined.
+fn uncertainties(problem: &Problem, free: &[usize], parameters: &[f64]) -> Result<Vec<f64>> {
+    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, free, &Unwatched);
+    let mut triangle = Triangle::new(free.len() + assembly.considered());
+    assembly.considered_rows(&x, &mut triangle)?;
+    let symmetry = assembly.scale_direction().map(<[f64]>::to_vec);
+    let decomposition = Decomposition::new(&triangle, free.len(), assembly.natural_scale(), symmetry.as_deref());
+    let considered: Vec<f64> = problem.groups().iter().flat_map(|g| g.considered()).map(|c| c.u_mm).collect();
+    let covariance = covariance(&decomposition, &triangle, 1.0, &considered);
+    let lost = decomposition.lost();
+    let mut u = vec![f64::NAN; parameters.len()];
+    for (unknown, &j) in free.iter().enumerate() {
+        if !lost[unknown] {
+            u[j] = covariance[unknown * free.len() + unknown].sqrt();
+        }
+    }
+    Ok(u)
+}
+
+/// Two numbers into one seed (SplitMix64's constants, Steele 2014).
+fn mix(seed: u64, run: u64) -> u64 {
+    let z = seed.wrapping_add(run.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9)
+}

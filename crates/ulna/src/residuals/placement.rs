@@ -1,0 +1,135 @@
+//! Where an artefact stands: the pose that fits the touches of its features best.
+
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix3xX, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use std::ops::Range;
+
+/// One standing of an artefact: which readings, and which motions of it the touched features can show.
+#[derive(Debug, Clone)]
+pub(super) struct Placement {
+    /// readings, in the order of the group
+    pub rows: Range<usize>,
+    /// centroid of the touched features, in the artefact's frame, mm
+    pub anchor: Vector3<f64>,
+    /// axes about which a turn moves a touched feature, in the artefact's frame: 3, 2 where they are in line, none for one
+    pub axes: Vec<Vector3<f64>>,
+    /// dimensions that the touched features span: 0 to 3
+    pub span: usize,
+}
+
+/// A radius this small against the artefact's size is a point on the axis, up to rounding.
+const ON_AXIS: f64 = 1e-8;
+
+impl Placement {
+    /// From the features touched in these rows (with repetitions).
+    pub fn new(rows: Range<usize>, touched: &[Vector3<f64>]) -> Placement {
+        let anchor = touched.iter().sum::<Vector3<f64>>() / touched.len() as f64;
+        let arms = touched.iter().map(|f| f - anchor);
+        let scatter: Matrix3<f64> = arms.map(|r| r * r.transpose()).sum();
+        let eigen = scatter.symmetric_eigen();
+        let size = eigen.eigenvalues.max();
+        let seen = |value: f64| value > size * ON_AXIS * ON_AXIS && size > 0.0;
+        let span = eigen.eigenvalues.iter().filter(|&&value| seen(value)).count();
+        let turns = |k: &usize| seen(eigen.eigenvalues.sum() - eigen.eigenvalues[*k]);
+        let axes = (0..3).filter(turns).map(|k| eigen.eigenvectors.column(k).into()).collect();
+        Placement {
+            rows,
+            anchor,
+            axes,
+            span,
+        }
+    }
+
+    /// Number of unknowns: 3, 5 or 6.
+    pub fn unknowns(&self) -> usize {
+        3 + self.axes.len()
+    }
+
+    /// The best pose `t_base_artefact` for whitened residuals `W (p - (R f + t))`.
+    ///
+    /// Where all weights are alike in all directions the closed form is exact (Kabsch 1976); else Gauss-Newton goes on from it.
+    pub fn pose(&self, touches: &[Touch], isotropic: bool) -> Isometry3<f64> {
+        let weight: f64 = touches.iter().map(Touch::weight).sum();
+        let mean = |of: fn(&Touch) -> Vector3<f64>| {
+            touches.iter().map(|t| of(t) * t.weight()).sum::<Vector3<f64>>() / weight
+        };
+        let (p_mean, f_mean) = (mean(|t| t.p_mm), mean(|t| t.feature_mm));
+        let mut rotation = Rotation3::identity();
+        if !self.axes.is_empty() {
+            let product = |t: &Touch| (t.p_mm - p_mean) * (t.feature_mm - f_mean).transpose() * t.weight();
+            let svd = touches.iter().map(product).sum::<Matrix3<f64>>().svd(true, true);
+            if let (Some(u), Some(v_t)) = (svd.u, svd.v_t) {
+                // singular values descend, so the last column is the free one
+                let mut u = u;
+                if (u * v_t).determinant() < 0.0 {
+                    u.set_column(2, &-u.column(2));
+                }
+                rotation = Rotation3::from_matrix_unchecked(u * v_t);
+            }
+        }
+        let translation = Translation3::from(p_mean - rotation * f_mean);
+        let mut pose = Isometry3::from_parts(translation, UnitQuaternion::from_rotation_matrix(&rotation));
+        if !isotropic {
+            for _ in 0..20 {
+                let moved = self.improve(&mut pose, touches);
+                if moved < 1e-13 {
+                    break;
+                }
+            }
+        }
+        pose
+    }
+
+    /// One Gauss-Newton step; returns its size relative to the distances involved.
+    fn improve(&self, pose: &mut Isometry3<f64>, touches: &[Touch]) -> f64 {
+        let n = self.unknowns();
+        let mut normal = DMatrix::zeros(n, n);
+        let mut right = DVector::zeros(n);
+        for touch in touches {
+            let residual = touch.whiten * touch.residual(pose);
+            let columns = Matrix3xX::from_columns(&self.derivatives(pose, touch));
+            normal += columns.transpose() * &columns;
+            right += columns.transpose() * residual;
+        }
+        let Some(cholesky) = normal.cholesky() else {
+            return 0.0;
+        };
+        let step = -cholesky.solve(&right);
+        let shift = Vector3::new(step[0], step[1], step[2]);
+        let turn: Vector3<f64> = self.axes.iter().zip(step.iter().skip(3)).map(|(axis, &s)| axis * s).sum();
+        let anchor_old = *pose * Point3::from(self.anchor);
+        let rotation = pose.rotation * UnitQuaternion::from_scaled_axis(turn);
+        let translation = anchor_old.coords + shift - rotation * self.anchor;
+        *pose = Isometry3::from_parts(translation.into(), rotation);
+        shift.norm() / (1.0 + anchor_old.coords.norm()) + turn.norm()
+    }
+
+    /// Derivatives of the whitened residual with respect to the placement's unknowns.
+    pub fn derivatives(&self, pose: &Isometry3<f64>, touch: &Touch) -> Vec<Vector3<f64>> {
+        let shifts = (0..3).map(|j| -touch.whiten.column(j));
+        let arm = touch.feature_mm - self.anchor;
+        let turns = self.axes.iter().map(|axis| -touch.whiten * (pose.rotation * axis.cross(&arm)));
+        shifts.chain(turns).collect()
+    }
+}
+
+/// The arm on a feature.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touch {
+    /// the tip, base frame
+    pub p_mm: Vector3<f64>,
+    /// the feature, artefact frame
+    pub feature_mm: Vector3<f64>,
+    /// inverse of a root of the covariance
+    pub whiten: Matrix3<f64>,
+}
+
+impl Touch {
+    /// Tip minus the feature's place.
+    pub fn residual(&self, pose: &Isometry3<f64>) -> Vector3<f64> {
+        self.p_mm - (pose * Point3::from(self.feature_mm)).coords
+    }
+
+    fn weight(&self) -> f64 {
+        self.whiten.norm_squared() / 3.0
+    }
+}

@@ -1,0 +1,132 @@
+//! Starts tried one after the other until the minimum that explains the readings is found.
+//!
+//! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
+//! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
+
+use crate::arm::Unit;
+use crate::error::{Error, Result};
+use crate::monitor::{Monitor, Stage};
+use crate::problem::{Assembly, Problem};
+use crate::solver::LeastSquares;
+use crate::solver::lm::{Options, minimize};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::f64::consts::PI;
+
+/// What a search found.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Searched {
+    /// Best free parameters.
+    pub x: Vec<f64>,
+    /// Their cost on the thinned readings.
+    pub cost: f64,
+    /// Cost of the point the search set out from, refitted, on the same readings.
+    pub cost_given: f64,
+    /// How many starts were tried.
+    pub starts: usize,
+}
+
+/// How far zero offsets are thrown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Throw {
+    /// Anywhere: nothing is known of them.
+    Anywhere,
+    /// Nearby first, then farther: the given start ended in a poor minimum.
+    Widening,
+}
+
+/// How to search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    pub throw: Throw,
+    pub most_starts: usize,
+    pub seed: u64,
+}
+
+/// Readings used for a start, and iterations after which a start is given up.
+const READINGS: usize = 200;
+const ITERATIONS: usize = 60;
+/// Starts that must agree on the best cost before it is believed, where no cost is low enough by itself.
+const AGREEING: usize = 4;
+
+pub(crate) fn search(
+    problem: &Problem,
+    free: &[usize],
+    given: &[f64],
+    plan: Plan,
+    monitor: &dyn Monitor,
+) -> Result<Searched> {
+    let thin = problem.with_groups(problem.groups().iter().map(|g| share(problem, g.as_ref())).collect());
+    let mut assembly = Assembly::new(&thin, free, monitor);
+    let options = Options {
+        max_iterations: ITERATIONS,
+        ..Options::default()
+    };
+    let quiet = Quiet(monitor);
+    let units = problem.arm().parameter_units();
+    let joints = problem.arm().joint_parameter_count();
+    let zero_offset = |j: usize| j < joints && j % 4 == 0 && units[j] == Unit::Rad;
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
+    let mut x = given.to_vec();
+    let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
+    let mut best = Searched {
+        x,
+        cost: cost_given,
+        cost_given,
+        starts: 1,
+    };
+    let mut agreeing = 1;
+    for attempt in 0..plan.most_starts {
+        if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
+            return Err(Error::Interrupted);
+        }
+        let width = match plan.throw {
+            Throw::Anywhere => PI,
+            Throw::Widening => [0.3, 0.6, 1.0, 1.5, 2.2, PI][attempt.min(59) / 10],
+        };
+        let mut x = given.to_vec();
+        for (value, &j) in x.iter_mut().zip(free) {
+            if zero_offset(j) {
+                *value += rng.random_range(-width..width);
+            }
+        }
+        let report = minimize(&mut assembly, &mut x, &options, &quiet)?;
+        best.starts += 1;
+        let tie = 1e-6 * best.cost + assembly.negligible_cost();
+        if report.cost < best.cost - tie {
+            best.x = x;
+            best.cost = report.cost;
+            agreeing = 1;
+        } else if report.cost <= best.cost + tie {
+            agreeing += 1;
+        }
+        // the noise as stated, or rounding, explains it; or several starts found the same
+        let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
+        let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
+        if explained || best.cost <= assembly.negligible_cost() || agreeing >= AGREEING {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// A group's part of the readings of a start.
+fn share(problem: &Problem, group: &dyn crate::residuals::Readings) -> Box<dyn crate::residuals::Readings> {
+    let part = (READINGS * group.len()).div_ceil(problem.readings().max(1));
+    let mut thin = group.thinned(part.max(4));
+    thin.keep_sin_cos();
+    thin
+}
+
+/// Lets a fit be interrupted without reporting each of its steps.
+struct Quiet<'a>(&'a dyn Monitor);
+
+impl Monitor for Quiet<'_> {
+    fn progress(&self, _: Stage, _: usize, _: usize) -> bool {
+        true
+    }
+
+    fn keep_going(&self) -> bool {
+        self.0.keep_going()
+    }
+}

@@ -1,0 +1,192 @@
+//! Parameter sets that describe the same readings, and the one among them nearest to the nominal arm.
+//!
+//! A joint flip turns the frame after joint i by π about the axis of joint i+1:
+//! `theta0_i + π, alpha_i → -alpha_i, a_i → -a_i, theta0_{i+1} + π` (Hayati: beta as well), for the last link with the
+//! tips' x and y negated. The mirror image negates all alpha, beta, d and the tips' z. (MODEL section 4)
+
+use crate::arm::{Arm, JointModel, Unit};
+use std::f64::consts::PI;
+
+/// The twin nearest to a nominal arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Folded {
+    /// Its parameters.
+    pub parameters: Vec<f64>,
+    /// What led there: "flip of joint 3", "mirror".
+    pub steps: Vec<String>,
+}
+
+/// Above this many joints twins are sought one flip at a time instead of in all combinations.
+const ALL_COMBINATIONS: usize = 12;
+
+/// What may be changed on the way to a twin.
+#[derive(Debug, Clone, Copy)]
+pub struct Freedom<'a> {
+    /// Parameters that are held must come out as they were.
+    pub free: &'a [bool],
+    /// The base frame is arbitrary: theta0 and d of joint 1 change nothing.
+    pub base_free: bool,
+    /// The mirror image explains the readings as well.
+    pub mirror_free: bool,
+}
+
+/// Folds `parameters` to the twin nearest to `nominal`; angles come out within π of nominal where they are free.
+pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) -> Folded {
+    let joints = arm.joints().len();
+    let units = arm.parameter_units();
+    let probes = 0..arm.probes().len();
+    let reach = probes.map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max);
+    let distance = |p: &[f64]| -> f64 {
+        let each = p.iter().zip(nominal).zip(&units).enumerate();
+        each.map(|(j, ((value, start), unit))| match unit {
+            Unit::Rad if freedom.base_free && j == 0 => 0.0,
+            Unit::Rad => (reach * wrap(value - start)).powi(2),
+            Unit::Mm => (value - start).powi(2),
+        })
+        .sum()
+    };
+    let allowed = |p: &[f64]| {
+        p.iter().zip(parameters).zip(&units).enumerate().all(|(j, ((new, old), unit))| {
+            let moved = if *unit == Unit::Rad { wrap(new - old).abs() } else { (new - old).abs() };
+            freedom.free[j] || moved < 1e-12 || (freedom.base_free && matters_not(arm, j))
+        })
+    };
+    let twin = |flips: u64, mirror: bool| {
+        let mut p = parameters.to_vec();
+        (0..joints).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(arm, i, &mut p));
+        if mirror {
+            reflect(arm, &mut p);
+        }
+        p
+    };
+    let candidates: Vec<u64> = if joints <= ALL_COMBINATIONS {
+        (0..1 << joints).collect()
+    } else {
+        std::iter::once(0).chain((0..joints.min(63)).map(|i| 1 << i)).collect()
+    };
+    let mirrors: &[bool] = if freedom.mirror_free { &[false, true] } else { &[false] };
+    let mut best = (distance(parameters), 0, false);
+    for &mirror in mirrors {
+        for &flips in &candidates {
+            let p = twin(flips, mirror);
+            let d = distance(&p);
+            if d < best.0 * (1.0 - 1e-12) && allowed(&p) {
+                best = (d, flips, mirror);
+            }
+        }
+    }
+    let (_, flips, mirror) = best;
+    let mut folded = twin(flips, mirror);
+    for (j, value) in folded.iter_mut().enumerate() {
+        if !freedom.free[j] || (freedom.base_free && matters_not(arm, j)) {
+            *value = parameters[j];
+        } else if units[j] == Unit::Rad {
+            *value = nominal[j] + wrap(*value - nominal[j]);
+        }
+    }
+    let mut steps: Vec<String> = (0..joints)
+        .filter(|i| flips >> i & 1 == 1)
+        .map(|i| format!("flip of joint {}", i + 1))
+        .collect();
+    if mirror {
+        steps.push("mirror".into());
+    }
+    Folded {
+        parameters: folded,
+        steps,
+    }
+}
+
+/// theta0 and d of the first joint only move the base.
+fn matters_not(arm: &Arm, parameter: usize) -> bool {
+    parameter == 0 || (parameter == 3 && arm.joints()[0].model == JointModel::Dh)
+}
+
+/// An angle within (-π, π].
+pub(crate) fn wrap(angle: f64) -> f64 {
+    angle - 2.0 * PI * (angle / (2.0 * PI)).round()
+}
+
+fn flip(arm: &Arm, joint: usize, p: &mut [f64]) {
+    p[4 * joint] += PI;
+    p[4 * joint + 1] = -p[4 * joint + 1];
+    p[4 * joint + 2] = -p[4 * joint + 2];
+    if arm.joints()[joint].model == JointModel::Hayati {
+        p[4 * joint + 3] = -p[4 * joint + 3];
+    }
+    if joint + 1 < arm.joints().len() {
+        p[4 * (joint + 1)] += PI;
+    } else {
+        for probe in 0..arm.probes().len() {
+            let at = arm.tip_offset(probe);
+            p[at] = -p[at];
+            p[at + 1] = -p[at + 1];
+        }
+    }
+}
+
+fn reflect(arm: &Arm, p: &mut [f64]) {
+    for joint in 0..arm.joints().len() {
+        p[4 * joint + 1] = -p[4 * joint + 1];
+        // d or beta
+        p[4 * joint + 3] = -p[4 * joint + 3];
+    }
+    for probe in 0..arm.probes().len() {
+        let at = arm.tip_offset(probe) + 2;
+        p[at] = -p[at];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::samples;
+    use crate::kinematics::tip_mm;
+
+    fn spread(seed: usize) -> [f64; 7] {
+        std::array::from_fn(|i| (((seed * 7 + i) as f64 * 0.754_877_666).fract() - 0.5) * 5.0)
+    }
+
+    #[test]
+    fn flips_leave_the_tip_and_mirrors_keep_lengths() {
+        let arm = samples::table2(10.0);
+        for joint in 0..6 {
+            let mut p = arm.parameters();
+            flip(&arm, joint, &mut p);
+            let twin = arm.with_parameters(&p).unwrap();
+            for seed in 0..20 {
+                let q = spread(seed);
+                assert!((tip_mm(&arm, 0, &q) - tip_mm(&twin, 0, &q)).norm() < 1e-12 * 1300.0);
+            }
+        }
+        let mut p = arm.parameters();
+        reflect(&arm, &mut p);
+        let twin = arm.with_parameters(&p).unwrap();
+        let length = |a: &Arm, s: usize| (tip_mm(a, 0, &spread(s)) - tip_mm(a, 0, &spread(s + 1))).norm();
+        for seed in 0..20 {
+            assert!((length(&arm, seed) - length(&twin, seed)).abs() < 1e-12 * 1300.0);
+        }
+    }
+
+    #[test]
+    fn every_twin_folds_back() {
+        let arm = samples::table2(10.0);
+        let nominal = arm.parameters();
+        let all = Freedom {
+            free: &[true; 27],
+            base_free: true,
+            mirror_free: true,
+        };
+        for flips in 0..64 {
+            let mut p = nominal.clone();
+            (0..6).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(&arm, i, &mut p));
+            reflect(&arm, &mut p);
+            p[0] = nominal[0];
+            p[3] = nominal[3];
+            let folded = fold(&arm, &p, &nominal, all).parameters;
+            for (a, b) in folded.iter().zip(&nominal) {
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+            }
+        }
+    }
+}
