@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 from rich.console import Console
-
 from tests.oracle import published
 from tests.oracle.core import core_arm
+
 from ulna.errors import UlnaInputError
 from ulna.reproduce import STUDIES, cheng2011
 from ulna.reproduce.cheng2011 import arms
