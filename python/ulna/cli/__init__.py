@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
@@ -12,9 +11,9 @@ from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
 from ulna.cli.identify import identify
 from ulna.cli.importing import app as importing
+from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
 from ulna.cli.measure import measure
 from ulna.cli.reproduce import reproduce
-from ulna.cli.running import INTERRUPTED, say_interrupted
 
 app = typer.Typer(
     name="ulna",
@@ -63,4 +62,8 @@ def main() -> None:
         app(prog_name="ulna")
     except KeyboardInterrupt:
         say_interrupted()
-        sys.exit(INTERRUPTED)
+        leave_interrupted()
+    except SystemExit as end:
+        if end.code == INTERRUPTED:
+            leave_interrupted()
+        raise

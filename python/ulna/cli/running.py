@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import os
+import signal
 import sys
 import warnings
 from collections.abc import Callable
@@ -12,8 +13,9 @@ from typing import Any, TextIO, TypeVar
 
 import typer
 
+from ulna.cli.interrupting import INTERRUPTED, prompt_interrupts, say_interrupted
+
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 Command = TypeVar("Command", bound=Callable[..., None])
 
@@ -26,7 +28,7 @@ def guard(command: Command) -> Command:
         from ulna.errors import InputWarning, UlnaInputError
 
         try:
-            with warnings.catch_warnings():
+            with prompt_interrupts(), warnings.catch_warnings():
                 warnings.simplefilter("always", InputWarning)
                 warnings.showwarning = _show_warning
                 command(*args, **kwargs)
@@ -34,6 +36,7 @@ def guard(command: Command) -> Command:
         except UlnaInputError as error:
             _fail(str(error))
         except KeyboardInterrupt:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # libraries may raise it twice; once is enough
             say_interrupted()
             raise typer.Exit(INTERRUPTED) from None
         except BrokenPipeError:
@@ -50,11 +53,6 @@ def guard(command: Command) -> Command:
     paragraphs = (inspect.getdoc(command) or "").split("\n\n")
     guarded.__doc__ = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
     return guarded  # type: ignore[return-value]  # same signature, by functools.wraps
-
-
-def say_interrupted() -> None:
-    """What Ctrl-C is answered with."""
-    print("\nInterrupted. Nothing was written.", file=sys.stderr)
 
 
 def _fail(message: str) -> None:

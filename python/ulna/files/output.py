@@ -5,11 +5,18 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from ulna.errors import UlnaInputError
+
+#: staging places of this process: whoever must end it at once takes them away first
+UNDER_WAY: set[Path] = set()
+
+#: held while results move from staging to their places
+MOVING = threading.Lock()
 
 
 def check_output(folder: Path, names: Sequence[str], force: bool = False) -> None:
@@ -44,17 +51,20 @@ def output_folder(folder: str | Path, names: Sequence[str], force: bool = False)
         staging = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", suffix=".partial", dir=folder.parent))
     except OSError as error:
         raise _unwritable(folder, error) from None
+    UNDER_WAY.add(staging)
     try:
         yield staging
         absent = [name for name in names if not (staging / name).is_file()]
         if absent:
             raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
         try:
-            _move_all(staging, folder, names)
+            with MOVING:
+                _move_all(staging, folder, names)
         except OSError as error:
             raise _unwritable(folder, error) from None
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+        UNDER_WAY.discard(staging)
 
 
 def _move_all(staging: Path, folder: Path, names: Sequence[str]) -> None:
@@ -101,12 +111,15 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
     except OSError as error:
         raise _unwritable(path, error) from None
     staged = Path(name)
+    UNDER_WAY.add(staged)
     try:
         yield staged
-        staged.chmod(0o666 & ~_umask())
-        staged.replace(path)
+        with MOVING:
+            staged.chmod(0o666 & ~_umask())
+            staged.replace(path)
     finally:
         staged.unlink(missing_ok=True)
+        UNDER_WAY.discard(staged)
 
 
 def _umask() -> int:

@@ -1,0 +1,68 @@
+"""Ctrl-C takes effect at once, also while the main thread is inside compiled code that looks for no signals.
+
+Python raises KeyboardInterrupt only between two of its own instructions; a large table being read or written can hold
+that up for seconds. So a second thread hears of the signal from the operating system. Where the main thread has not
+answered after a grace period, it takes away what is half written and ends the process.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NoReturn
+
+INTERRUPTED = 130
+_GRACE_S = 0.1
+
+
+@contextmanager
+def prompt_interrupts() -> Iterator[None]:
+    """While this lasts, SIGINT ends the process soon after the grace period whatever the main thread is doing."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # a caller's thread: signals are the main thread's affair
+        return
+    hear, tell = os.pipe()
+    os.set_blocking(tell, False)
+    answered = threading.Event()
+    before = signal.set_wakeup_fd(tell, warn_on_full_buffer=False)
+    threading.Thread(target=_watch, args=(hear, answered), daemon=True).start()
+    try:
+        yield
+    finally:
+        answered.set()
+        signal.set_wakeup_fd(before)
+        os.close(tell)  # the watching thread reads the end and returns
+
+
+def _watch(hear: int, answered: threading.Event) -> None:
+    while heard := os.read(hear, 1):
+        if heard[0] == signal.SIGINT and not answered.wait(_GRACE_S):
+            _end_at_once()
+    os.close(hear)
+
+
+def _end_at_once() -> None:
+    output = sys.modules.get("ulna.files.output")
+    if output is not None:
+        output.MOVING.acquire()  # a result on its way to its place arrives; none leaves after this
+        for staged in list(output.UNDER_WAY):
+            shutil.rmtree(staged, ignore_errors=True) if staged.is_dir() else staged.unlink(missing_ok=True)
+    say_interrupted()
+    leave_interrupted()
+
+
+def leave_interrupted() -> NoReturn:
+    """End with exit code 130. Python itself would now and then end by the signal, code -2: it does so where the
+    interrupt came while a string was being executed, as dataclasses do, even if somebody caught it (CPython 3.11)."""
+    sys.stderr.flush()
+    os._exit(INTERRUPTED)
+
+
+def say_interrupted() -> None:
+    """What Ctrl-C is answered with."""
+    print("\nInterrupted. Nothing was written.", file=sys.stderr)
