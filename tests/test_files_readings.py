@@ -235,3 +235,15 @@ def test_temperatures_of_some_files_and_not_of_others(small: SmallStudy) -> None
     expected = [[21, 22, 23]] * 8 + [[25] * 3] * 4 + [[np.nan] * 3] * 4
     assert group.temperature_c is not None
     assert np.array_equal(group.temperature_c, expected, equal_nan=True)
+
+
+def test_nothing_but_encoder_columns(small: SmallStudy) -> None:
+    small.swap("study.toml", 'kind = "bar"\nlength = 443.172\nu = 0.001', 'kind = "seat"')
+    TABLE.select("q1", "q2", "q3").write_csv(small.folder / "bars.csv")
+    group = _only(small)
+    assert np.array_equal(group.q_rad, Q)
+    assert (group.feature.tolist(), group.placement.tolist()) == ([0] * 8, ["1"] * 8)
+    small.swap("study.toml", 'kind = "seat"', 'kind = "length"\nlength = 3')
+    both = pl.DataFrame(np.hstack([Q, Q + 0.1]), schema=["q1", "q2", "q3", "p1", "p2", "p3"])
+    both.write_csv(small.folder / "bars.csv")
+    assert _only(small).length_mm == pytest.approx(np.full(8, 3.0))

@@ -31,7 +31,8 @@ def read_readings(
     header = read_header(path, WHAT)
     check_columns(header, arm.n, arm.name, remarks)
     frame = read_table(header, is_numeric)
-    if not len(frame):
+    count = len(frame)
+    if not count:
         raise UlnaInputError(
             f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
         )
@@ -40,10 +41,10 @@ def read_readings(
     check_ids(frame, header)
     for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
         chosen = list(artefacts.values())[index]
-        rows = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
-        own = frame if len(rows) == len(frame) else frame[rows]
+        rows = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(count)
+        own = frame if len(rows) == count else frame[rows]
         parts.append(_part(own, rows + 1, chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), len(frame))
+    return parts, InputFile(path, file_sha256(path), count)
 
 
 def _part(
@@ -82,7 +83,7 @@ def _part(
             codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row, remarks), len(row)
         ),
         feature=_features(frame, row, artefact, header, source, remarks),
-        placement=_placements(frame, artefact, source, header, remarks),
+        placement=_placements(frame, row, source, header, remarks),
         row=row,
         file=np.full(len(row), source.index, dtype=np.int64),
         id=frame["id"].to_numpy().astype(object) if "id" in frame.columns else None,
@@ -91,10 +92,10 @@ def _part(
 
 
 def angles(frame: pl.DataFrame, letter: str, factors: F64) -> F64:
-    """Columns q1 … qn (or p1 …) → (N, n) rad, column by column: one copy of the data."""
+    """Columns q1 … qn (or p1 …) → (N, n) rad. They leave the frame as they are copied: the data are there once."""
     out = np.empty((len(frame), len(factors)))
     for k, factor in enumerate(factors):
-        np.multiply(frame[f"{letter}{k + 1}"].to_numpy(), factor, out=out[:, k])
+        np.multiply(frame.drop_in_place(f"{letter}{k + 1}").to_numpy(), factor, out=out[:, k])
     return out
 
 
@@ -120,7 +121,7 @@ def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, 
                 f"{header.path}: the column 'length' is missing; expected the distance between the two poses of each "
                 f"row, in {units.length}. Add it, or give artefact.{artefact.name}.length in {source.study}."
             )
-        return np.full(len(frame), artefact.length_mm)
+        return np.full(len(row), artefact.length_mm)
     lengths = frame["length"].to_numpy()
     if (lengths < 0).any():
         first = int(np.argmax(lengths < 0))
@@ -135,24 +136,25 @@ def _features(
     frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, remarks: list[str]
 ) -> I64:
     if artefact.kind == "length":
-        return np.zeros(len(frame), dtype=np.int64)
+        return np.zeros(len(row), dtype=np.int64)
     known = list(artefact.features)
     return each_row(
-        codes(frame, header, source, "feature", known, f"artefact '{artefact.name}'", row, remarks), len(frame)
+        codes(frame, header, source, "feature", known, f"artefact '{artefact.name}'", row, remarks), len(row)
     )
 
 
 def _placements(
-    frame: pl.DataFrame, artefact: Artefact, source: Source, header: Header, remarks: list[str]
+    frame: pl.DataFrame, row: I64, source: Source, header: Header, remarks: list[str]
 ) -> NDArray[np.object_]:
     """(N,) str. With neither column nor key the whole file is one standing; "" says so until files are merged."""
     if "placement" not in frame.columns:
-        return np.full(len(frame), source.entry.placement or "", dtype=object)
+        return np.full(len(row), source.entry.placement or "", dtype=object)
     remark_unused(frame, header, source, "placement", remarks)
-    # One str object for each label, shared by its rows.
-    labels = frame["placement"].unique(maintain_order=True)
-    codes = frame["placement"].replace_strict(labels, pl.int_range(len(labels), eager=True), return_dtype=pl.Int64)
-    placements: NDArray[np.object_] = np.array(labels.to_list(), dtype=object)[codes.to_numpy()]
+    # Run by run, and one str object for each label: a million Python strings would outweigh the numbers.
+    runs = frame["placement"].rle().struct
+    seen: dict[str, str] = {}
+    labels = np.array([seen.setdefault(label, label) for label in runs.field("value")], dtype=object)
+    placements: NDArray[np.object_] = np.repeat(labels, runs.field("len").to_numpy())
     return placements
 
 
