@@ -49,7 +49,8 @@ def _group_table(study: Study, readings: Readings, residual_mm: Any, weight: Any
     rows = len(readings)
     columns: dict[str, Any] = {
         "row": readings.row,
-        "file": _named([file.path.name for file in study.files], readings.file),
+        # a study made in memory has no files
+        "file": _named([file.path.name for file in study.files] or ["in memory"], readings.file),
         "artefact": pl.repeat(artefact.name, rows, eager=True),
         "placement": pl.Series(readings.placement.tolist(), dtype=pl.String),
         "probe": _named(list(study.arm.probes), readings.probe),
