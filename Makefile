@@ -85,6 +85,10 @@ bench: build ## time the core and the peers that are installed, side by side; wr
 example-data: build ## make the readings of examples/platinum anew (fixed seed: nothing changes unless the generator did)
 	$(BIN)/python examples/platinum/generate.py
 
+.PHONY: docs-output
+docs-output: build ## run what the docs show and write its output into docs/
+	$(BIN)/python tools/docs_output.py
+
 .PHONY: lock
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
 	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }

@@ -4,16 +4,14 @@ import numpy as np
 
 import ulna
 
-JOINTS = tuple(
-    ulna.Joint(theta0_rad, alpha_rad, a_mm, d_mm)
-    for theta0_rad, alpha_rad, a_mm, d_mm in (
-        (0.0, -np.pi / 2, 40.0, 250.0),
-        (2.2689, np.pi / 2, -40.0, 0.0),
-        (0.0, -np.pi / 2, 30.0, 450.0),
-        (2.2689, np.pi / 2, -30.0, 0.0),
-        (0.0, -np.pi / 2, 30.0, 450.0),
-        (2.2689, np.pi / 2, -30.0, 0.0),
-    )
+JOINTS = (
+    ulna.Joint(theta0_rad=0.0, alpha_rad=-np.pi / 2, a_mm=40.0, d_mm=250.0),
+    ulna.Joint(theta0_rad=2.2689, alpha_rad=np.pi / 2, a_mm=-40.0, d_mm=0.0),
+    ulna.Joint(theta0_rad=0.0, alpha_rad=-np.pi / 2, a_mm=30.0, d_mm=450.0),
+    ulna.Joint(theta0_rad=2.2689, alpha_rad=np.pi / 2, a_mm=-30.0, d_mm=0.0),
+    ulna.Joint(theta0_rad=0.0, alpha_rad=-np.pi / 2, a_mm=30.0, d_mm=450.0),
+    ulna.Joint(theta0_rad=2.2689, alpha_rad=np.pi / 2, a_mm=-30.0, d_mm=0.0),
+    ulna.Joint(name="wrist roll"),
 )
 
 

@@ -1,0 +1,136 @@
+"""The messages on the errors page: each kind of bad input made from the shipped example, and what the command says."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from docs_running import reader_folder, ulna
+
+STUDY = "examples/platinum/study.toml"
+ARM = "examples/platinum/platinum.toml"
+READINGS = "examples/platinum/bars.csv"
+Break = Callable[[Path], None]
+
+
+def swap(name: str, old: str, new: str, count: int = 1) -> Break:
+    """Replace text in a file; fails where it is not there, so that a case cannot quietly stop being one."""
+
+    def edit(folder: Path) -> None:
+        text = (folder / name).read_text(encoding="utf-8")
+        assert old in text, f"{name} has no {old!r}"
+        (folder / name).write_text(text.replace(old, new, count), encoding="utf-8")
+
+    return edit
+
+
+def cell(row: int, column: int, value: str) -> Break:
+    """Put a value into a data row (from 1) and column (from 0) of the readings."""
+
+    def edit(folder: Path) -> None:
+        lines = (folder / READINGS).read_text(encoding="utf-8").splitlines()
+        cells = lines[row].split(",")
+        cells[column] = value
+        lines[row] = ",".join(cells)
+        (folder / READINGS).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    return edit
+
+
+def rows(keep: Callable[[list[str]], list[str]]) -> Break:
+    """Keep some data rows of the readings."""
+
+    def edit(folder: Path) -> None:
+        header, *data = (folder / READINGS).read_text(encoding="utf-8").splitlines()
+        (folder / READINGS).write_text("\n".join([header, *keep(data)]) + "\n", encoding="utf-8")
+
+    return edit
+
+
+def degrees(folder: Path) -> None:
+    """Write the angles in degrees, but let the study go on calling them radians."""
+    header, *data = (folder / READINGS).read_text(encoding="utf-8").splitlines()
+    turned = []
+    for line in data:
+        cells = line.split(",")
+        turned.append(",".join([*cells[:2], *(f"{float(value) * 57.29578:.4f}" for value in cells[2:])]))
+    (folder / READINGS).write_text("\n".join([header, *turned]) + "\n", encoding="utf-8")
+
+
+def decimal_commas(folder: Path) -> None:
+    """As a spreadsheet of another country writes it."""
+    text = (folder / READINGS).read_text(encoding="utf-8")
+    (folder / READINGS).write_text(text.replace(",", ";").replace(".", ","), encoding="utf-8")
+
+
+def keep_results(folder: Path) -> None:
+    """A result of yesterday."""
+    (folder / "out").mkdir()
+    (folder / "out" / "result.json").write_text("{}", encoding="utf-8")
+
+
+#: section → what is wrong → how to break the example
+CASES: dict[str, dict[str, Break]] = {
+    "Files": {
+        "a file that is not there": swap(STUDY, '"bars.csv"', '"bar.csv"'),
+        "another kind of file": swap(STUDY, "ulna-study/1", "ulna-arm/1"),
+        "a format of the future": swap(STUDY, "ulna-study/1", "ulna-study/7"),
+        "an unknown key": swap(STUDY, "encoder =", "encodr ="),
+        "no units": swap(ARM, 'units = { length = "mm", angle = "rad" }\n', ""),
+        "an empty file": rows(lambda data: []),
+        "a result of yesterday in the way": keep_results,
+    },
+    "Cells": {
+        "not a number": cell(17, 4, "n/a"),
+        "NaN": cell(17, 4, "nan"),
+        "degrees read as radians": degrees,
+        "decimal commas": decimal_commas,
+        "a blank line in between": cell(17, 8, "0.1\n"),
+    },
+    "Names": {
+        "an unknown probe": swap(STUDY, 'probe = "bent"', 'probe = "bend"'),
+        "an unknown artefact": swap(STUDY, 'artefact = "bar"', 'artefact = "baar"'),
+        "an unknown feature": cell(17, 1, "C"),
+        "a pattern that matches nothing": swap(STUDY, "joint.1.theta0", "joint.8.theta0"),
+    },
+    "Sense": {
+        "another number of joints": swap(ARM, "[[joint]]\ntheta0 = 1.521927\nalpha = -1.57\na = 35.0\nd = 149.7\n", ""),
+        "a bar touched at one end only": rows(lambda data: data[:-1]),
+        "fewer observations than unknowns": rows(lambda data: data[:20]),
+        "what comes with a later version": swap(STUDY, "[fit]", '[fit]\nloss = "huber"'),
+    },
+}
+#: suspicious, but possible: the work is done all the same
+WARNINGS: dict[str, Break] = {
+    "a row twice": rows(lambda data: [*data, data[0]]),
+    "readings outside a joint's limits": swap(ARM, "alpha = -1.57\n", "alpha = -1.57\nlimits = [-2.9, 2.9]\n"),
+}
+
+
+def message(broken: Break, exit_code: int = 2) -> str:
+    """What `ulna calibrate` says to the example broken in this way."""
+    with reader_folder() as folder:
+        broken(folder)
+        done = ulna(["calibrate", STUDY, "-o", "out"], folder)
+        assert done.returncode == exit_code, f"expected exit code {exit_code}, got {done.returncode}: {done.stderr}"
+        text = (
+            done.stderr.split("Written:")[0]
+            .strip()
+            .replace(str(folder.resolve()) + "/", "")
+            .replace(str(folder) + "/", "")
+        )
+        return re.sub(r"\s*\n\s*", " ", text)
+
+
+def _quoted(words: str, broken: Break, exit_code: int) -> str:
+    return f"**{words[0].upper()}{words[1:]}**\n\n> `{message(broken, exit_code)}`"
+
+
+def error_page() -> str:
+    """Markdown: a section for each kind, a quoted message for each case."""
+    parts = ["<!-- Generated by `make docs-output`; do not edit. -->"]
+    for section, cases in CASES.items():
+        parts.append(f"## {section}")
+        parts += [_quoted(words, broken, 2) for words, broken in cases.items()]
+    parts.append("## Warnings")
+    parts += [_quoted(words, broken, 0) for words, broken in WARNINGS.items()]
+    return "\n\n".join(parts) + "\n"

@@ -1,0 +1,113 @@
+"""Writes what the docs show of commands and examples: `make docs-output`. Nothing on those pages is typed by hand.
+
+Each command runs in a folder of its own that holds a copy of examples/, so the paths in its output are those that a
+reader sees. A test compares every file with what the program prints today.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from docs_errors import error_page
+from docs_real_readings import real_readings_page
+from docs_running import ROOT, reader_folder, ulna
+
+OUTPUT = ROOT / "docs" / "output"
+EXAMPLES_OUTPUT = ROOT / "docs" / "examples" / "output"
+#: an example that prints this as its exit code says that its data are not at hand
+SKIPPED = 77
+
+#: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
+COMMANDS: dict[str, tuple[list[str], int | None]] = {
+    "identify.txt": (["identify", "examples/platinum/study.toml"], None),
+    "calibrate.txt": (["calibrate", "examples/platinum/study.toml", "-o", "out/demo"], None),
+    "evaluate.txt": (["evaluate", "out/demo/result.json", "examples/platinum/check.toml"], None),
+    "evaluate-before.txt": (["evaluate", "examples/platinum/platinum.toml", "examples/platinum/check.toml"], None),
+    "cross-validate.txt": (["cross-validate", "examples/platinum/study.toml", "--by", "5"], None),
+    "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
+    "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
+}
+
+
+def tidy(text: str) -> str:
+    """Without the spaces that fill a table's lines; one line end at the end."""
+    return "\n".join(line.rstrip() for line in text.strip("\n").splitlines()) + "\n"
+
+
+def command_outputs() -> dict[str, str]:
+    """File name → text, of all commands. Raises RuntimeError where one does not exit with 0."""
+    found = {}
+    with reader_folder() as folder:
+        head = (folder / "examples" / "platinum" / "bars.csv").read_text(encoding="utf-8").splitlines()[:5]
+        found["bars-head.txt"] = tidy("\n".join(head))
+        for name, (arguments, lines) in COMMANDS.items():
+            done = ulna(arguments, folder)
+            if done.returncode != 0:
+                raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
+            text = tidy(done.stdout)
+            found[name] = text if lines is None else "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
+    return found
+
+
+def example_output(example: Path) -> str | None:
+    """What an example prints; None where it says that its data are not at hand. Raises RuntimeError where it fails."""
+    environment = os.environ | {"PYTHONWARNINGS": "error"}
+    command = [sys.executable, str(example)]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode == SKIPPED:
+        return None
+    if done.returncode != 0:
+        raise RuntimeError(f"{example.name} exited with {done.returncode}:\n{done.stderr}")
+    return done.stdout
+
+
+def examples() -> list[Path]:
+    """The numbered examples, in order."""
+    return sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
+
+
+#: first words after the prompt in a block of the README → file with what the command prints
+IN_README = {
+    ".venv/bin/ulna calibrate": OUTPUT / "calibrate.txt",
+    ".venv/bin/ulna evaluate": OUTPUT / "evaluate.txt",
+    ".venv/bin/python examples/03": EXAMPLES_OUTPUT / "03_identify_before_you_fit.txt",
+}
+
+
+def filled_readme(text: str) -> str:
+    """The README with the output of the commands that it shows. Raises RuntimeError for a command it does not know."""
+
+    def filled(block: re.Match[str]) -> str:
+        for words, file in IN_README.items():
+            if block["command"].startswith(words):
+                return f"```console\n$ {block['command']}\n{file.read_text(encoding='utf-8')}```\n"
+        raise RuntimeError(f"README.md shows '{block['command']}', whose output nobody writes: add it to IN_README")
+
+    return re.sub(r"```console\n\$ (?P<command>[^\n]*)\n.*?```\n", filled, text, flags=re.DOTALL)
+
+
+def main() -> None:
+    OUTPUT.mkdir(parents=True, exist_ok=True)
+    EXAMPLES_OUTPUT.mkdir(parents=True, exist_ok=True)
+    for name, text in command_outputs().items():
+        (OUTPUT / name).write_text(text, encoding="utf-8")
+    (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
+    for example in examples():
+        printed = example_output(example)
+        if printed is None:
+            print(f"{example.name}: data not at hand, left as it was")
+        else:
+            (EXAMPLES_OUTPUT / f"{example.stem}.txt").write_text(printed, encoding="utf-8")
+    page = real_readings_page()
+    if page is None:
+        print("real readings: data not at hand, left as they were")
+    else:
+        (OUTPUT / "real-readings.md").write_text(page, encoding="utf-8")
+    readme = ROOT / "README.md"
+    readme.write_text(filled_readme(readme.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
