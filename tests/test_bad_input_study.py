@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 from tests.small_study import SmallStudy, says
 
+from ulna import UlnaInputError, calibrate
+
 CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no format": ('format = "ulna-study/1"\n', "", ("key 'format' is missing",)),
     "arm as a study": ('"ulna-study/1"', '"ulna-arm/1"', ("another kind of file", "ulna-study/1")),
@@ -105,3 +107,14 @@ def test_three_coordinates_a_feature(tmp_path: Path) -> None:
     small = SmallStudy(tmp_path)
     small.swap("study.toml", 'kind = "bar"\nlength = 443.172\nu = 0.001', 'kind = "points"\nfeatures = { A = [0, 0] }')
     says(small.error(), "'artefact.bar.features.A'", "at least 3 entries (there are 2)")
+
+
+def test_fewer_observations_than_unknowns(tmp_path: Path) -> None:
+    small = SmallStudy(tmp_path)
+    lines = (tmp_path / "bars.csv").read_text().splitlines()
+    small.write("bars.csv", "\n".join([lines[0], lines[1], lines[4]]) + "\n")
+    study, _ = small.load()
+    with pytest.raises(UlnaInputError) as caught:
+        calibrate(study)
+    for fragment in (f"{small.path}: ", "6 equations for 14 unknowns", "at least 3 more readings, or hold"):
+        assert fragment in str(caught.value)

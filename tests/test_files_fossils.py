@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ulna import Arm, Study
+from ulna import Arm, Result, Study
+from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.study import Readings
 
 FOSSILS = Path(__file__).parent / "data" / "fossils"
@@ -98,3 +100,43 @@ def test_lengths_1(study: Study) -> None:
     assert distance.p_rad is not None
     assert distance.p_rad[1].tolist() == [-1.1, 1.2, -1.3, 1.4]
     assert distance.length_mm == pytest.approx(np.full(2, 17.4477 * 25.4))
+
+
+def test_result_1() -> None:
+    path = FOSSILS / "result-1.json"
+    ResultFile.model_validate(json.loads(path.read_text()))
+    result = Result.load(path)
+    assert (result.fit.converged, result.fit.readings, len(result.residuals)) == (True, 78, 78)
+    assert result.identifiability.determined == 17
+    assert [row.status for row in result.parameters[:4]] == ["held", "fitted", "fitted", "not-determined"]
+    assert result.after["length_error_max_abs_mm"] == pytest.approx(0.01479, abs=1e-5)
+    arm = Arm.load(path)
+    assert arm == result.arm
+    assert [joint.model for joint in arm.joints] == ["dh", "dh", "hayati", "dh", "dh"]
+    assert arm.joints[0].a_mm == pytest.approx(40.7, abs=1.5)
+    assert arm.probes["bent"].ball_mm == 6.0
+    assert arm.uncertainty is not None
+    assert arm.uncertainty.matrix.shape == (len(arm.uncertainty.names),) * 2
+    lost = {name for direction in arm.uncertainty.lost for name in direction["combination"]}
+    assert lost == {"joint.1.d", "probe.straight.x", "probe.straight.y", "probe.straight.z"}
+
+
+def test_evaluation_1_and_cross_validation_1() -> None:
+    evaluation = EvaluationFile.model_validate_json((FOSSILS / "evaluation-1.json").read_text())
+    assert len(evaluation.artefacts) == 12
+    assert evaluation.overall.seat_scatter_mean_mm == pytest.approx(0.011965, abs=1e-6)
+    found = CrossValidationFile.model_validate_json((FOSSILS / "cross-validation-1.json").read_text())
+    assert len(found.groups) == 3
+    assert found.after.seat_scatter_mean_mm is not None
+    assert found.before.seat_scatter_mean_mm is not None
+    assert found.after.seat_scatter_mean_mm < found.before.seat_scatter_mean_mm
+
+
+def test_what_is_written_today_is_still_of_version_1(tmp_path: Path) -> None:
+    old = Result.load(FOSSILS / "result-1.json")
+    old.save(tmp_path)
+    again = Result.load(tmp_path / "result.json")
+    ResultFile.model_validate(json.loads((tmp_path / "result.json").read_text()))
+    assert again.arm == old.arm
+    assert Arm.load(tmp_path / "arm.toml") == old.arm
+    assert again.residuals.equals(old.residuals)

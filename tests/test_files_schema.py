@@ -13,6 +13,7 @@ from tests.small_study import ARM, STUDY
 from ulna.files.schema import MODELS, schemas
 
 FOLDER = Path(__file__).parents[1] / "schemas"
+FOSSILS = Path(__file__).parent / "data" / "fossils"
 
 
 @pytest.mark.parametrize("name", [f"{name}.json" for name in MODELS])
@@ -36,7 +37,7 @@ def _known(schema: dict[str, Any], at: dict[str, Any], document: Any, where: str
     if isinstance(document, dict):
         inner = at.get("properties", {})
         rest = at.get("additionalProperties", {})
-        unknown = [f"{where}.{key}" for key in document if key not in inner and not isinstance(rest, dict)]
+        unknown = [f"{where}.{key}" for key in document if key not in inner and rest is False]
         missing = [f"{where}.{key}" for key in at.get("required", []) if key not in document]
         into = {key: inner.get(key, rest) for key in document if key in inner or isinstance(rest, dict)}
         below = [_known(schema, each, document[key], f"{where}.{key}") for key, each in into.items()]
@@ -45,8 +46,17 @@ def _known(schema: dict[str, Any], at: dict[str, Any], document: Any, where: str
         return [each for value in document for each in _known(schema, at.get("items", {}), value, where)]
     if "enum" in at or "const" in at:
         return [] if document in at.get("enum", [at.get("const")]) else [where]
-    kinds: dict[str, Any] = {"string": str, "number": (int, float), "integer": int, "boolean": bool}
+    kinds: dict[str, Any] = {"string": str, "number": (int, float), "integer": int, "boolean": bool, "null": type(None)}
     return [] if "type" not in at or isinstance(document, kinds.get(at["type"], ())) else [where]
+
+
+@pytest.mark.parametrize("kind", ["result", "evaluation", "cross-validation"])
+def test_results_fit_their_schemas(kind: str) -> None:
+    schema = json.loads((FOLDER / f"ulna-{kind}-1.json").read_text(encoding="utf-8"))
+    document = json.loads((FOSSILS / f"{kind}-1.json").read_text(encoding="utf-8"))
+    assert _known(schema, schema, document, "") == []
+    del document["format"]
+    assert _known(schema, schema, document, "") == [".format"]
 
 
 @pytest.mark.parametrize(("name", "text"), [("ulna-arm-1", ARM), ("ulna-study-1", STUDY)])

@@ -110,11 +110,23 @@ def test_ipa_ur10(tmp_path: Path) -> None:
     assert group.q_rad[1].tolist() == [0.25, -0.125, 0.25, 0.5, 0.75, 1.0]
     assert group.temperature_c is not None
     assert group.temperature_c.tolist() == [21.5] * 3
-    assert set(group.placement) == {"1"}
+    assert set(group.placement) == {"s1"}
     assert list(rest.readings[0].artefact.features) == ["m2", "m4", "m6", "m7", "m8", "m9", "m10"]
     assert [joint.model for joint in study.arm.joints] == ["dh", "hayati", "hayati", "dh", "dh", "dh"]
     assert import_ipa_ur10(path, tmp_path / "whole") == (10, 0)
     assert not (tmp_path / "whole" / "held-out.toml").exists()
+
+
+def test_ipa_ur10_spread_and_in_several_standings(tmp_path: Path) -> None:
+    path = tmp_path / "measurements.csv"
+    path.write_text(_tracker_table(10))
+    assert import_ipa_ur10(path, tmp_path / "out", fit=3, spread=True, standings=2) == (3, 7)
+    study, rest = Study.load(tmp_path / "out" / "study.toml"), Study.load(tmp_path / "out" / "held-out.toml")
+    assert list(study.readings[0].artefact.features) == ["m2", "m6", "m9"]  # the middles of thirds
+    assert study.readings[0].placement.tolist() == ["s1", "s2", "s2"]
+    assert rest.readings[0].placement.tolist() == ["s1"] * 4 + ["s2"] * 3
+    with pytest.raises(UlnaInputError, match=r"--spread goes with --fit and not with --every"):
+        import_ipa_ur10(path, tmp_path / "out", spread=True, force=True)
 
 
 def test_what_a_bad_tracker_table_is_told(tmp_path: Path) -> None:
@@ -126,7 +138,7 @@ def test_what_a_bad_tracker_table_is_told(tmp_path: Path) -> None:
     with pytest.raises(UlnaInputError, match="column 'measurement_y' is missing"):
         import_ipa_ur10(path, tmp_path / "out")
     path.write_text(_tracker_table(4))
-    with pytest.raises(UlnaInputError, match="at least the 5 of --fit"):
+    with pytest.raises(UlnaInputError, match=r"4 of them to choose from.*at least the 5 of --fit"):
         import_ipa_ur10(path, tmp_path / "out", fit=5)
     assert not (tmp_path / "out").exists()
 

@@ -62,17 +62,21 @@ def ipa_ur10(
     fit: Annotated[
         int | None, typer.Option(min=1, help="How many rows to fit; the rest is held out. Default: all.")
     ] = None,
-    every: Annotated[int, typer.Option(min=1, help="Fit every k-th row only.")] = 1,
+    every: Annotated[int, typer.Option(min=1, help="Choose among every k-th row only.")] = 1,
+    spread: Annotated[bool, typer.Option("--spread", help="Spread the rows to fit over the file.")] = False,
+    standings: Annotated[
+        int, typer.Option(min=1, help="Take the tracker's place as new in each of so many parts of the file.")
+    ] = 1,
     parquet: AsParquet = False,
     force: Force = False,
 ) -> None:
     """A UR10 whose flange a laser tracker followed; rows that are not fitted become held-out.toml.
 
-    Example: ulna import ipa-ur10 Series_B/measurements_joint_configurations.csv -o ur10 --fit 300
+    Example: ulna import ipa-ur10 Series_B/measurements_joint_configurations.csv -o ur10 --fit 300 --spread
     """
     from ulna.importers.ipa import import_ipa_ur10
 
-    fitted, held_out = import_ipa_ur10(file, out, fit, every, parquet, force)
+    fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, force)
     _say(f"{out}: {fitted} readings to fit (study.toml), {held_out} held out{' (held-out.toml)' * bool(held_out)}.")
     _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
 

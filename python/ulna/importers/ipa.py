@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
 from ulna.files.cells import Header
@@ -48,27 +49,29 @@ frame = "free"
 
 
 def import_ipa_ur10(
-    path: Path, out: Path, fit: int | None = None, every: int = 1, parquet: bool = False, force: bool = False
+    path: Path,
+    out: Path,
+    fit: int | None = None,
+    every: int = 1,
+    spread: bool = False,
+    standings: int = 1,
+    parquet: bool = False,
+    force: bool = False,
 ) -> tuple[int, int]:
     """A measurement file as a study folder `out`; returns how many readings are fitted and how many held out.
 
-    `fit` readings, every `every`-th row from the first, go into study.toml; the rest, if any, into held-out.toml.
-    Raises UlnaInputError; nothing is written then.
+    `fit` readings go into study.toml, the rest, if any, into held-out.toml: every `every`-th row from the first on, or
+    with `spread` the middle row of each of `fit` equal blocks of the file. `standings`: the tracker's frame creeps; its
+    place is taken as new in each of so many equal parts of the file. Raises UlnaInputError; nothing is written then.
     """
     header = _header(path)
     used = {*JOINTS, *POSITION, TEMPERATURE}
     frame = read_table(header, lambda column: column in used)
-    fitted = np.zeros(len(frame), dtype=bool)
-    fitted[::every] = True
-    if fit is not None:
-        if fit > fitted.sum():
-            raise UlnaInputError(
-                f"{path}: there are {len(frame)} rows, of which every {every}th are {int(fitted.sum())}; expected at "
-                f"least the {fit} of --fit. Give a smaller --fit or --every."
-            )
-        fitted[np.flatnonzero(fitted)[fit:]] = False
-    names = [f"m{row}" for row in range(1, len(frame) + 1)]
+    count = len(frame)
+    fitted = _chosen(count, fit, every, spread, path)
+    names = [f"m{row}" for row in range(1, count + 1)]
     readings = frame.select(
+        placement=pl.Series([f"s{1 + standings * row // count}" for row in range(count)]),
         feature=pl.Series(names),
         **{f"q{k}": pl.col(joint) for k, joint in enumerate(JOINTS, start=1)},
         temperature=pl.col(TEMPERATURE),
@@ -85,6 +88,26 @@ def import_ipa_ur10(
         tables |= {f"{rows}.{ending}": readings.filter(mask), f"{features}.{ending}": points.filter(mask)}
     write_study_folder(out, ur10(), studies, tables, force=force)
     return int(fitted.sum()), int((~fitted).sum())
+
+
+def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -> NDArray[np.bool_]:
+    """(count,) true for the rows to fit."""
+    if spread and (fit is None or every != 1):
+        raise UlnaInputError(
+            f"{path}: --spread goes with --fit and not with --every; expected, say, --fit 300 --spread."
+        )
+    candidates = np.arange(0, count, every)
+    if fit is not None and fit > len(candidates):
+        raise UlnaInputError(
+            f"{path}: there are {count} rows, {len(candidates)} of them to choose from with --every {every}; expected "
+            f"at least the {fit} of --fit. Give a smaller --fit or --every."
+        )
+    chosen = np.zeros(count, dtype=bool)
+    if spread and fit is not None:
+        chosen[(2 * np.arange(fit) + 1) * count // (2 * fit)] = True
+    else:
+        chosen[candidates[:fit]] = True
+    return chosen
 
 
 def _header(path: Path) -> Header:
