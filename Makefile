@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # mkdocs-material announces its plans for another major version of mkdocs; ours is pinned by the lock.
-export NO_MKDOCS_2_WARNING := true
+export NO_MKDOCS_2_WARNING := 1
 
 .PHONY: help
 help: ## list these targets
