@@ -273,13 +273,13 @@ def test_help_imports_nothing_heavy() -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_ctrl_c_leaves_nothing(tmp_path: Path) -> None:
-    study = write_lengths(tmp_path, rows=101, fit='start = "search"')
+    study = write_lengths(tmp_path, rows=3000, fit='start = "search"')
     # zero offsets so wrong, and lengths so noisy, that the search has work for long
     rows = pl.read_csv(tmp_path / "rows.csv")
     noise = pl.Series(np.random.default_rng(5).normal(0, 200, rows.height))
     rows.with_columns((pl.col("length") + noise).abs()).write_csv(tmp_path / "rows.csv")
     process = subprocess.Popen(
-        [sys.executable, "-m", "ulna", "cross-validate", str(study), "--by", "50", "-o", str(tmp_path / "out")],
+        [sys.executable, "-m", "ulna", "cross-validate", str(study), "--by", "1000", "-o", str(tmp_path / "out")],
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,

@@ -124,7 +124,7 @@ def test_no_uncertainty_where_the_point_depends_on_what_was_lost(tmp_path: Path)
     (note,) = done.notes
     assert "probe 'straight'" in note
     assert "probe.straight.x" in note
-    assert "BECAUSE. REMEDY." in note
+    assert "Why: BECAUSE. Remedy: REMEDY." in note
 
 
 def test_no_degrees_of_freedom_no_uncertainty(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.cores import available_cores
 from ulna.errors import UlnaInputError, nearest
 from ulna.figures import figures
 from ulna.identify import Identification
@@ -91,7 +92,7 @@ def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = N
     options = study.fit
     rows = sum(len(group) for group in study.readings)
     if threads <= 0:
-        threads = _cores() if options.start == "search" or rows > 20_000 else 1
+        threads = available_cores() if options.start == "search" or rows > 20_000 else 1
     problem = study.problem()
     try:
         return _core.fit(
@@ -107,12 +108,6 @@ def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = N
         )
     except _core.UlnaError as error:
         raise UlnaInputError(f"{study.label}: {error}") from None
-
-
-def _cores() -> int:
-    import os
-
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _parameters(

@@ -10,6 +10,7 @@ from rich.text import Text
 from ulna.cross_validate import CrossValidation
 from ulna.report.digits import figure_mm
 from ulna.report.figures import MOST_ROWS, before_after
+from ulna.report.identification import sentence
 from ulna.report.tables import heading, listed, table
 
 _SHOWN = {
@@ -53,7 +54,8 @@ def _lost_only_sometimes(found: CrossValidation) -> list[RenderableType]:
                 losing.setdefault(direction["because"], []).append(group.group)
                 remedies[direction["because"]] = direction["remedy"]
     items = [
-        (f"Without {_some(groups)}: {because}", f"Remedy: {remedies[because]}") for because, groups in losing.items()
+        (f"Without {_some(groups)}: {sentence(because)}", f"Remedy: {sentence(remedies[because])}")
+        for because, groups in losing.items()
     ]
     return ["", heading("Not determined by the readings that were left"), listed(items)] if items else []
 

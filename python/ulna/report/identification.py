@@ -56,17 +56,22 @@ def _lost(direction: Mapping[str, Any]) -> Sequence[str]:
     frame = " No length or shape depends on it." if direction.get("frame") else ""
     return (
         f"{combination(direction['combination'])}{f'   ({cause})' if cause else ''}",
-        f"Why: {direction['because']}{frame}",
-        f"Remedy: {direction['remedy']}",
+        f"Why: {sentence(direction['because'])}{frame}",
+        f"Remedy: {sentence(direction['remedy'])}",
     )
 
 
 def _weak(direction: Mapping[str, Any]) -> Sequence[str]:
     return (
         f"{combination(direction['combination'])}   (u = {uncertainty(direction['u'])} {direction['unit']})",
-        f"Why: {direction['because']}",
-        f"Remedy: {direction['remedy']}",
+        f"Why: {sentence(direction['because'])}",
+        f"Remedy: {sentence(direction['remedy'])}",
     )
+
+
+def sentence(text: str) -> str:
+    """With a full stop; the core's reasons are clauses."""
+    return text if text.endswith(".") else f"{text}."
 
 
 def combination(weights: Mapping[str, float]) -> str:
