@@ -271,6 +271,34 @@ def test_help_imports_nothing_heavy() -> None:
     assert done.stderr.strip() == "[]"
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX pipes")
+def test_a_reader_who_has_seen_enough_is_no_error(tmp_path: Path) -> None:
+    platinum().save(tmp_path / "arm.toml")
+    q = np.random.default_rng(0).uniform(-3, 3, (200_000, 7))
+    pl.DataFrame({f"q{k + 1}": q[:, k] for k in range(7)}).write_parquet(tmp_path / "q.parquet")
+    command = f"{sys.executable} -m ulna measure {tmp_path}/arm.toml {tmp_path}/q.parquet | head -2"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60, check=True)
+    assert done.stderr == ""
+    assert done.stdout.startswith("x,y,z\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
+def test_a_full_disk_is_told(tmp_path: Path) -> None:
+    study = write_lengths(tmp_path)
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "ulna", "calibrate", str(study)],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "No space left" in done.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_ctrl_c_leaves_nothing(tmp_path: Path) -> None:
     study = write_lengths(tmp_path, rows=3000, fit='start = "search"')

@@ -107,10 +107,10 @@ def cross_validate(
     groups = []
     for number, fold in enumerate(left_out):
         if progress is not None:
-            progress(f"leave out {fold.name}", number, len(left_out))
+            progress("groups left out", number, len(left_out))
         groups.append(_judge(study, fold, hold, hold_all_but_probes, threads))
     if progress is not None:
-        progress("done", len(left_out), len(left_out))
+        progress("groups left out", len(left_out), len(left_out))
     return CrossValidation(
         by=how,
         groups=groups,

@@ -92,10 +92,12 @@ def figures(arm: Arm, study: Study) -> tuple[list[PlacementFigures], Figures]:
     entries: list[PlacementFigures] = []
     pooled: list[dict[str, _Errors]] = []
     for readings in study.readings:
-        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), readings.probe)
+        # one probe for all is much quicker than one for each row
+        probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
+        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe)
         second_mm = None
         if readings.p_rad is not None:
-            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), readings.probe)
+            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe)
         labels, code = placements(readings)
         errors = errors_of_tips(readings, code, first_mm, second_mm)
         pooled.append(errors)

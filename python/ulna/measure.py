@@ -95,24 +95,19 @@ def measure_to_stream(
     """
     job = MeasureJob(arm, Path(readings), probe, angle, units)
     job.check()
-    if json_lines:
-        for frame in job.frames():
-            frame.write_ndjson(file)
-    else:
-        write_csv(job.frames(), file)
+    for number, frame in enumerate(job.frames()):
+        # as text, so that a reader who has gone away is noticed as Python notices it
+        text = frame.write_ndjson() if json_lines else frame.write_csv(include_header=number == 0)
+        file.write(text.encode())
     file.flush()
     return Measurement(job.rows, job.columns, job.unit, notes=job.notes)
 
 
-def write_csv(frames: Iterator[pl.DataFrame], file: BinaryIO) -> None:
-    """With a header; numbers in the shortest form that reads back the same."""
-    for number, frame in enumerate(frames):
-        frame.write_csv(file, include_header=number == 0)
-
-
 def _write_csv(frames: Iterator[pl.DataFrame], path: Path) -> None:
+    """Numbers in the shortest form that reads back the same."""
     with path.open("wb") as file:
-        write_csv(frames, file)
+        for number, frame in enumerate(frames):
+            frame.write_csv(file, include_header=number == 0)
 
 
 def _write_parquet(frames: Iterator[pl.DataFrame], path: Path) -> None:

@@ -59,6 +59,8 @@ class MeasureJob:
         check_columns(self.header, self.arm.n, self.arm.name, remarks)
         self._texts = [name for name in ("id", "probe") if name in self.header.columns]
         self._probe = self._fixed_probe(probe, remarks)
+        if "p1" in self.header.columns:
+            remarks.append(f"{self.header.path}: two poses a row: only those of q1 … q{self.arm.n} are measured.")
         for remark in remarks:
             warnings.warn(remark, InputWarning, stacklevel=2)
         self._uncertainty: TipUncertainty | None = None

@@ -18,6 +18,12 @@ Progress = Callable[[str, int, int], None]
 _PROGRESS_AFTER_S = 1.0
 
 
+class _Out(Console):
+    def on_broken_pipe(self) -> None:
+        """A reader who has seen enough is no failure; `guard` knows."""
+        raise BrokenPipeError
+
+
 def say(message: str) -> None:
     """A message for the user, on stderr."""
     print(message, file=sys.stderr)
@@ -31,12 +37,12 @@ def print_json(document: Mapping[str, Any]) -> None:
 
 def print_renderable(*parts: RenderableType) -> None:
     """On stdout. Where a table is wider than the terminal its lines run over: no number is ever cut or broken."""
-    console = Console(file=sys.stdout, highlight=False)
+    console = _Out(file=sys.stdout, highlight=False)
     for part in parts:
         width = console.width
         if isinstance(part, Table) and all(column.no_wrap for column in part.columns):
             width = max(width, Measurement.get(console, console.options.update(max_width=10_000), part).maximum)
-        Console(file=sys.stdout, highlight=False, width=width).print(part, crop=False)
+        _Out(file=sys.stdout, highlight=False, width=width).print(part, crop=False)
 
 
 def print_names(what: str, descriptions: Mapping[str, str]) -> None:

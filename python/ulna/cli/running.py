@@ -42,6 +42,10 @@ def guard(command: Command) -> Command:
         except BrokenPipeError:
             # whoever read our output has seen enough; without this Python complains once more at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        except OSError as error:
+            # a disk that is full, a network folder that went away: what nobody can foresee
+            where = f"{error.filename}: " if error.filename else ""
+            _fail(f"{where}cannot be read or written ({error.strerror or error}). Check the disk and the permissions.")
         except ValueError as error:
             if not _is_core_error(error):
                 raise
