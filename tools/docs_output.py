@@ -43,6 +43,11 @@ def tidy(text: str) -> str:
     return "\n".join(line.rstrip() for line in text.strip("\n").splitlines()) + "\n"
 
 
+def first_lines(text: str, lines: int) -> str:
+    """The first lines, and a sign that there are more."""
+    return "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
+
+
 def command_outputs(pictures: bool = False) -> dict[str, str]:
     """File name → text, of all commands; pictures: also put theirs in place. Raises RuntimeError where one fails."""
     found = {}
@@ -54,7 +59,8 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
             if done.returncode not in (0, 1):
                 raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
             text = tidy(done.stdout)
-            found[name] = text if lines is None else "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
+            found[name] = text if lines is None else first_lines(text, lines)
+        found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(folder / made, shown)
@@ -80,7 +86,7 @@ def examples() -> list[Path]:
 
 #: first words after the prompt in a block of the README → file with what the command prints
 IN_README = {
-    ".venv/bin/ulna calibrate": OUTPUT / "calibrate.txt",
+    ".venv/bin/ulna calibrate": OUTPUT / "calibrate-short.txt",
     ".venv/bin/ulna evaluate": OUTPUT / "evaluate.txt",
     ".venv/bin/python examples/03": EXAMPLES_OUTPUT / "03_identify_before_you_fit.txt",
 }

@@ -1,0 +1,73 @@
+"""What the docs show is what the program prints today, so that nobody reads yesterday's output."""
+
+import importlib
+import math
+import re
+import sys
+from itertools import zip_longest
+
+import pytest
+
+NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+@pytest.fixture(scope="module")
+def tools(root):
+    """The modules in tools/, which are no package."""
+    sys.path.insert(0, str(root / "tools"))
+    try:
+        yield {name: importlib.import_module(name) for name in ("docs_output", "docs_errors", "docs_real_readings")}
+    finally:
+        sys.path.remove(str(root / "tools"))
+
+
+def same(shown: str, printed: str) -> list[str]:
+    """Lines that differ, numbers in the last digits apart: other processors round otherwise."""
+    differing = []
+    for one, other in zip_longest(shown.splitlines(), printed.splitlines(), fillvalue=""):
+        # a digit more or less moves columns, so runs of spaces and lines count as one
+        words, others = (re.sub(r"[\s─]+", " ", NUMBER.sub("#", line)).strip() for line in (one, other))
+        numbers = zip_longest(NUMBER.findall(one), NUMBER.findall(other), fillvalue="nan")
+        close = all(
+            math.isclose(float(a.replace("−", "-")), float(b.replace("−", "-")), rel_tol=0.02, abs_tol=2e-4)
+            for a, b in numbers
+        )
+        if words != others or not close:
+            differing.append(f"shown:   {one}\nprinted: {other}")
+    return differing
+
+
+def test_the_comparison_sees_what_it_should():
+    assert same("rms  0.0105 mm", "rms 0.01051 mm") == []
+    assert same("rms 0.0105 mm", "rms 0.0205 mm") != []
+    assert same("rms 0.0105 mm", "max 0.0105 mm") != []
+    assert same("one line", "one line\nanother") != []
+
+
+def test_outputs_of_commands(root, tools):
+    printed = tools["docs_output"].command_outputs()
+    shown = {path.name for path in (root / "docs" / "output").glob("*.txt")}
+    assert shown == set(printed)
+    for name, text in printed.items():
+        assert same((root / "docs" / "output" / name).read_text(encoding="utf-8"), text) == [], name
+
+
+def test_messages_on_the_errors_page(root, tools):
+    shown = (root / "docs" / "output" / "errors.md").read_text(encoding="utf-8")
+    assert same(shown, tools["docs_errors"].error_page()) == []
+
+
+def test_tables_of_real_readings(root, tools, shared_data):
+    for name, table in tools["docs_real_readings"].real_readings_tables().items():
+        assert same((root / "docs" / "output" / f"real-{name}.md").read_text(encoding="utf-8"), table) == [], name
+
+
+def test_readme_shows_what_is_printed(root, tools):
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    assert tools["docs_output"].filled_readme(readme) == readme, "run `make docs-output`"
+
+
+def test_every_generated_output_is_shown(root):
+    pages = "\n".join(path.read_text(encoding="utf-8") for path in (root / "docs").rglob("*.md"))
+    for path in [*(root / "docs" / "output").iterdir(), *(root / "docs" / "examples" / "output").iterdir()]:
+        assert str(path.relative_to(root)) in pages, f"{path.name} is made but not shown"
