@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
-import tempfile
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ulna.errors import UlnaInputError
@@ -46,13 +46,13 @@ def output_folder(folder: str | Path, names: Sequence[str], force: bool = False)
     """
     folder = Path(folder)
     check_output(folder, names, force)
+    staging = _staging(folder, folder.name)
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", suffix=".partial", dir=folder.parent))
-    except OSError as error:
-        raise _unwritable(folder, error) from None
-    UNDER_WAY.add(staging)
-    try:
+        try:
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            staging.mkdir(mode=0o700)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
         yield staging
         absent = [name for name in names if not (staging / name).is_file()]
         if absent:
@@ -104,22 +104,29 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
         raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
     if path.exists() and not force:
         raise UlnaInputError(f"{path}: exists already and is not overwritten. Name another file, or give --force.")
+    staged = _staging(path, path.stem, path.suffix)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=f".partial{path.suffix}", dir=path.parent)
-        os.close(handle)
-    except OSError as error:
-        raise _unwritable(path, error) from None
-    staged = Path(name)
-    UNDER_WAY.add(staged)
-    try:
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            staged.touch(mode=0o600, exist_ok=False)
+        except OSError as error:
+            raise _unwritable(path, error) from None
         yield staged
         with MOVING:
             staged.chmod(0o666 & ~_umask())
             staged.replace(path)
     finally:
-        staged.unlink(missing_ok=True)
+        with suppress(OSError):
+            staged.unlink()
         UNDER_WAY.discard(staged)
+
+
+def _staging(target: Path, stem: str, suffix: str = "") -> Path:
+    """A name beside the target that nobody else has. Known as under way before anything is made there, so that an
+    interrupt at any moment leaves nothing behind."""
+    staging = target.parent / f".{stem}-{secrets.token_hex(6)}.partial{suffix}"
+    UNDER_WAY.add(staging)
+    return staging
 
 
 def _umask() -> int:

@@ -1,0 +1,81 @@
+"""What the tests of the commands share: a virtual Platinum, studies of it on disk, and runs of the program."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+
+from ulna.model import Arm, Joint, Probe
+
+TABLE_4 = [
+    (1.521927, -1.572781, 42.4754, 149.7000),
+    (0.791659, 1.567756, -42.0588, -0.9472),
+    (0.022211, -1.570242, 28.5382, 439.5104),
+    (0.879434, 1.568061, -28.5351, -0.8421),
+    (0.032396, -1.574439, 28.5535, 439.4015),
+    (0.860088, 1.572594, -28.5478, -0.9604),
+]
+BENT = Probe.from_cylindrical(0.431148, 39.4321, 223.8773)
+STRAIGHT = Probe(0.0, 0.0, 238.5596)
+
+
+def platinum(probes: dict[str, Probe] | None = None, wrong: float = 0.0) -> Arm:
+    rng = np.random.default_rng(9)
+    joints = [Joint(*(np.array(row) + wrong * rng.uniform(-1, 1, 4) * [0.02, 0.01, 5, 5])) for row in TABLE_4]
+    return Arm("virtual Platinum", (*joints, Joint()), probes or {"bent": BENT})
+
+
+def write_lengths(
+    folder: Path, rows: int = 101, probes: dict[str, Probe] | None = None, noise: str = "", fit: str = ""
+) -> Path:
+    """A study of length rows in two placements, its start arm a little wrong."""
+    rng = np.random.default_rng(2)
+    truth = platinum(probes)
+    q, p = rng.uniform(-2.5, 2.5, (2, rows, 7))
+    probe = next(iter(truth.probes))
+    length = np.linalg.norm(truth.tip(q, probe) - truth.tip(p, probe), axis=1) + rng.normal(0, 0.01, rows)
+    columns: dict[str, Any] = {f"q{k + 1}": q[:, k] for k in range(7)} | {f"p{k + 1}": p[:, k] for k in range(7)}
+    columns |= {"length": length, "placement": np.where(np.arange(rows) % 2, "left", "right")}
+    folder.mkdir(parents=True, exist_ok=True)
+    pl.DataFrame(columns).write_csv(folder / "rows.csv")
+    platinum(probes, wrong=1.0).save(folder / "start.toml", force=True)
+    study = folder / "study.toml"
+    study.write_text(
+        'format = "ulna-study/1"\narm = "start.toml"\nunits = { length = "mm", angle = "rad" }\n'
+        f'[[readings]]\nfile = "rows.csv"\nartefact = "rows"\nprobe = "{probe}"\n[artefact.rows]\nkind = "length"\n'
+        f"{noise}\n[fit]\n{fit}\n"
+    )
+    return study
+
+
+def run(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "ulna", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=os.environ | {"COLUMNS": "80", "TERM": "dumb"} | environment,
+        check=False,
+    )
+
+
+def assert_bad_input(done: subprocess.CompletedProcess[str], *expected: str) -> None:
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+    for each in expected:
+        assert each in done.stderr
+
+
+def strict_json(text: str) -> Any:
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    return json.loads(text, parse_constant=refuse)
