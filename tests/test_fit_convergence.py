@@ -11,8 +11,8 @@ from tests.oracle.published import table_2
 from ulna import _core
 
 
-def refit(truth, groups, seed, zero_rad, length_mm, **options):
-    start = virtual.wrong_start(truth, np.random.default_rng(seed), zero_rad, length_mm)
+def refit(truth, groups, draw, zero_rad, length_mm, **options):
+    start = virtual.wrong_start(truth, np.random.default_rng(draw), zero_rad, length_mm)
     return start, _core.fit(core_problem(start, groups), nothing_held(truth), **options)
 
 
@@ -166,7 +166,7 @@ def test_holds_are_respected_by_the_search(study):
 def test_iterations_can_run_out(study):
     truth, groups, _ = study
     start = virtual.wrong_start(truth, np.random.default_rng(7), 0.3, 50.0)
-    found = _core.fit(core_problem(start, groups), nothing_held(truth), max_iterations=1)
+    found = _core.fit(core_problem(start, groups), nothing_held(truth), max_iterations=1, search_starts=0)
     assert found.iterations <= 1
     assert found.termination == "max-iterations"
     assert not found.converged

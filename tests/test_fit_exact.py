@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.oracle import virtual
 from tests.oracle.arms import parallel_axes
-from tests.oracle.chain import cylindrical_tip
+from tests.oracle.chain import chain, cylindrical_tip
 from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Points
 from tests.oracle.published import STRAIGHT_4, TABLE_2, TABLE_3, six_axes, table_2, table_3, table_4
@@ -59,6 +59,36 @@ def test_a_straight_probe_still_measures(seed):
     fresh = virtual.random_lengths(truth, rng, 200)
     calibrated = start.with_parameters(found.parameters)
     assert abs(fresh.residuals(calibrated, np.zeros(0))).max() < 1e-6
+
+
+@pytest.mark.parametrize("r_mm", [10.0, 0.0965])
+@pytest.mark.parametrize("kind", ["length", "plate", "base frame"])
+def test_a_straight_start_does_not_stay_straight(kind, r_mm):
+    """Drawn straight, built with a bend: what is lost at the start is not lost at the arm that is found."""
+    truth, start = table_2(r_mm=r_mm), table_3(r_mm=0.0)
+    rng = np.random.default_rng(1)
+    groups = {
+        "length": lambda: [virtual.random_lengths(truth, rng, 101)],
+        "plate": lambda: [virtual.plate(truth, rng, 8)],
+        "base frame": lambda: [virtual.coordinates(truth, rng, 60, placed=False)],
+    }[kind]()
+    found = _core.fit(core_problem(start, groups), nothing_held(start))
+    lost = [] if kind == "base frame" else BASE
+    assert sorted(found.identifiability.not_determined) == sorted(lost)
+    assert found.rms_mm < 1e-6
+    if r_mm == 10.0:
+        assert_is(found, truth, but=lost)
+
+
+def test_axes_drawn_parallel_need_not_be():
+    """The same for axes: nominally parallel DH joints, built with a tilt of a milliradian each."""
+    drawn = [[0.0, 1.57, 30.0, 200.0], [0.1, 0.0, 400.0, 0.0], [0.2, 0.0, 380.0, 0.0], [0.0, 1.57, 0.0, 120.0]]
+    built = np.array(drawn) + [[0.0, 1e-3, 0.5, 0.0]] * 4
+    start, truth = chain(np.array(drawn), [40.0, 0.0, 150.0]), chain(built, [41.0, 1.0, 150.0])
+    groups = [virtual.random_lengths(truth, np.random.default_rng(2), 101)]
+    found = _core.fit(core_problem(start, groups), nothing_held(start))
+    assert found.rms_mm < 1e-6
+    assert sorted(found.identifiability.not_determined) == sorted(BASE)
 
 
 def test_two_straight_probes_need_no_bent_one():

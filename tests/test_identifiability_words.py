@@ -8,7 +8,7 @@ from tests.oracle import fits, virtual
 from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths, stack
 from tests.oracle.published import six_axes, table_2
-from tests.test_identifiability_ranks import BASE, TABLE, lengths, one_seat
+from tests.test_identifiability_ranks import BASE, TABLE, case, lengths, one_seat
 
 from ulna import _core
 
@@ -24,9 +24,7 @@ def vector(arm, direction):
 @pytest.mark.parametrize("row", range(len(TABLE)))
 def test_a_lost_direction_changes_no_residual(row):
     """The claim itself, held against the oracle: a step along each lost combination is absorbed by the placements."""
-    build, readings, _, _ = TABLE[row]
-    arm = build()
-    groups = readings(arm, np.random.default_rng(row))
+    arm, groups = case(row)
     j = fits.reduced_jacobian(groups, arm)
     norms = np.linalg.norm(j, axis=0)
     for lost in _core.identify(core_problem(arm, groups), nothing_held(arm)).lost:
@@ -39,9 +37,8 @@ def test_a_lost_direction_changes_no_residual(row):
 
 @pytest.mark.parametrize("row", range(len(TABLE)))
 def test_every_lost_direction_has_a_cause_and_a_remedy(row):
-    build, readings, _, _ = TABLE[row]
-    arm = build()
-    found = _core.identify(core_problem(arm, readings(arm, np.random.default_rng(row))), nothing_held(arm))
+    arm, groups = case(row)
+    found = _core.identify(core_problem(arm, groups), nothing_held(arm))
     for lost in found.lost:
         assert len(lost["because"]) > 20
         assert len(lost["remedy"]) > 20

@@ -66,17 +66,18 @@ def test_intervals_from_noise_drawn_by_the_core(kind):
     else:
         groups = [virtual.bars(truth, np.random.default_rng(7), 40, 443.172, each=2)]
     problem = core_problem(truth, groups, STATED)
-    parameters, u, converged = _core.recalibrate(problem, nothing_held(truth), core_arm(truth), RUNS, seed=1, threads=2)
-    assert parameters.shape == u.shape == (RUNS, 27)
+    runs = 3 * RUNS  # they are cheap, and the limits are then five standard errors away
+    parameters, u, converged = _core.recalibrate(problem, nothing_held(truth), core_arm(truth), runs, seed=1, threads=2)
+    assert parameters.shape == u.shape == (runs, 27)
     assert converged.all()
     assert np.isnan(u[:, [0, 3]]).all()
-    np.testing.assert_array_equal(parameters[:, [0, 3]], np.broadcast_to(truth.parameters[[0, 3]], (RUNS, 2)))
+    np.testing.assert_array_equal(parameters[:, [0, 3]], np.broadcast_to(truth.parameters[[0, 3]], (runs, 2)))
     coverage = inside(parameters, u, truth)
     assert (coverage >= LOW).all(), coverage
     assert (coverage <= HIGH).all(), coverage
     # The scatter of the estimates is what each run stated.
     scatter = parameters[:, DETERMINED].std(axis=0) / np.sqrt((u[:, DETERMINED] ** 2).mean(axis=0))
-    assert abs(scatter - 1).max() < 4 / np.sqrt(2 * RUNS)
+    assert abs(scatter - 1).max() < 4.5 / np.sqrt(2 * runs)
 
 
 def test_recalibrations_do_not_depend_on_threads():

@@ -107,8 +107,10 @@ def fit(
         return np.hstack([of_arm[:, free], of_placements])
 
     x0 = np.concatenate([start.parameters[free], unknowns])
+    # MINPACK's LM wants no fewer equations than unknowns; a bar's turn about itself may be one too many.
+    method = "lm" if len(residuals(x0)) >= len(x0) else "trf"
     found = least_squares(
-        residuals, x0, jacobian, method="lm", x_scale="jac", xtol=1e-13, ftol=1e-15, gtol=1e-15, max_nfev=200
+        residuals, x0, jacobian, method=method, x_scale="jac", xtol=1e-13, ftol=1e-15, gtol=1e-15, max_nfev=200
     )
     return Found(arm_at(found.x), 2 * found.cost, jacobian(found.x), residuals(found.x), free)
 

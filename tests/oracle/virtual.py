@@ -17,29 +17,31 @@ def random_poses(arm: Chain, rng: np.random.Generator, count: int) -> Array:
 
 
 def try_poses(arm: Chain, points_mm: Array, rng: np.random.Generator, probe: int = 0, tries: int = 4) -> Array:
-    """(N, n) encoder angles within the travel that put the tip on (N, 3) points, NaN where none was found.
+    """(N, n) encoder angles within the travel that put the tip on (N, 3) points; NaN where none was found.
 
     Damped Newton from random poses; what does not arrive is tried again from elsewhere, so elbow and wrist differ from
     touch to touch.
     """
     points_mm = np.atleast_2d(points_mm)
     out = np.full((len(points_mm), arm.joints), np.nan)
-    open_rows = np.arange(len(points_mm))
     for _ in range(tries):
+        open_rows = np.flatnonzero(np.isnan(out[:, 0]))
+        if not len(open_rows):
+            break
         q = random_poses(arm, rng, len(open_rows))
-        target = points_mm[open_rows]
         for _ in range(25):
-            miss = target - arm.tip(q, probe)
+            miss = points_mm[open_rows] - arm.tip(q, probe)
+            there = np.linalg.norm(miss, axis=1) < 1e-10
+            within = there & (abs(q) <= TRAVEL_RAD).all(axis=1)
+            out[open_rows[within]] = q[within]
+            open_rows, q, miss = open_rows[~there], q[~there], miss[~there]
+            if not len(open_rows):
+                break
             j = arm.encoder_jacobian(q, probe)
             damping = (1e-3 * (miss**2).sum(axis=1))[:, None, None] * np.eye(3)
             pull = np.linalg.solve(j @ j.transpose(0, 2, 1) + damping, miss[..., None])[..., 0]
             step = np.einsum("nki,nk->ni", j, pull)
             q = q + step / np.maximum(1.0, abs(step).max(axis=1, keepdims=True) / 0.5)
-        there = (np.linalg.norm(target - arm.tip(q, probe), axis=1) < 1e-9) & (abs(q) <= TRAVEL_RAD).all(axis=1)
-        out[open_rows[there]] = q[there]
-        open_rows = open_rows[~there]
-        if not len(open_rows):
-            break
     return out
 
 
@@ -93,9 +95,12 @@ def bars(
     probe: int = 0,
 ) -> Points:
     """A bar in ``count`` random places and directions, each end touched ``each`` times."""
-    first = random_points(arm, rng, 4 * count)
-    direction = rng.standard_normal(first.shape)
-    second = first + length_mm * direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    # Towards another place that the arm reaches, so that the far end is rarely out of reach.
+    first, towards = random_points(arm, rng, 3 * count), random_points(arm, rng, 3 * count)
+    apart = np.linalg.norm(towards - first, axis=1)
+    chosen = np.flatnonzero(apart > 0.8 * length_mm)[: count + count // 3 + 3]
+    first = first[chosen]
+    second = first + (towards[chosen] - first) * (length_mm / apart[chosen])[:, None]
     reached = np.isfinite(try_poses(arm, second, rng, probe)).all(axis=1)
     assert reached.sum() >= count
     ends = np.stack([first[reached], second[reached]], axis=1)[:count]  # (count, 2, 3)
@@ -135,7 +140,7 @@ def plate(arm: Chain, rng: np.random.Generator, count: int, touches: Touches = E
     """A ball plate of nine balls 100 mm apart, in ``count`` places, every ball touched once."""
     grid = np.array([[100.0 * i, 100.0 * j, 5.0 * i * j] for i in range(3) for j in range(3)])
     balls = []
-    for where in random_points(arm, rng, 4 * count):
+    for where in random_points(arm, rng, 8 * count):
         turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
         balls.append(grid @ (turn * np.sign(np.linalg.det(turn))).T + where)
     reached = np.isfinite(try_poses(arm, np.concatenate(balls), rng, probe)).reshape(-1, 9 * arm.joints).all(axis=1)

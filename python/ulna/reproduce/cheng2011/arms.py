@@ -57,6 +57,9 @@ ENCODER_RAD = 5e-6
 SEAT_MM = 0.008
 """Noise of the virtual experiment, standard deviations: of each encoder, and of a touch per coordinate."""
 
+TRIES = 400
+"""Random elbows and wrists to try for a point, so that one at the edge of the arm's travel is not given up."""
+
 
 def arm_of(name: str, links: Links, probe: Probe) -> Arm:
     """Six links and a probe as a seven-axis arm."""
@@ -89,7 +92,7 @@ def travel_rad(arm: Arm) -> F64:
 def touch(arm: Arm, points_mm: F64, seed: int, rng: np.random.Generator) -> F64:
     """(N, 7) encoder readings with the ball in seats at (N, 3) points: seat noise, elbow at random, encoder noise."""
     beside = points_mm + SEAT_MM * rng.standard_normal(points_mm.shape)
-    q_rad, reached = arm.core.pose_for_points(beside, travel_rad(arm), seed)
+    q_rad, reached = arm.core.pose_for_points(beside, travel_rad(arm), seed, tries=TRIES)
     if not reached.all():
         raise ValueError(f"{int((~reached).sum())} of {len(reached)} points are out of the virtual arm's reach")
     return q_rad + ENCODER_RAD * rng.standard_normal(q_rad.shape)
@@ -102,7 +105,7 @@ def places_of_a_bar(arm: Arm, count: int, seed: int, rng: np.random.Generator) -
     first = arm.tip(rng.uniform(limits[:, 0], limits[:, 1], (tries, arm.n)))
     direction = rng.standard_normal((tries, 3))
     second = first + BAR_MM * direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    _, reached = arm.core.pose_for_points(second, limits, seed)
+    _, reached = arm.core.pose_for_points(second, limits, seed, tries=TRIES // 4)
     if reached.sum() < count:
         raise ValueError(f"only {int(reached.sum())} of {count} places of the bar are within the virtual arm's reach")
     return np.stack([first, second], axis=1)[reached][:count]

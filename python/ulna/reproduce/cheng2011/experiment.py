@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from ulna.reproduce.cheng2011.arms import (
     BAR_MM,
     BENT_PROBE,
     ENCODER_RAD,
+    RATED_MM,
     SEAT_MM,
     STRAIGHT_PROBE,
     places_of_a_bar,
@@ -21,6 +23,7 @@ from ulna.reproduce.cheng2011.arms import (
 )
 
 F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
 
 BARS = 101
 FRESH_BARS = 10
@@ -92,6 +95,35 @@ def rerun_experiment(seed: int) -> Experiment:
         bent_errors_true_arm_mm=_errors_mm(bent, bent_rad),
         straight_errors_true_arm_mm=_errors_mm(straight, straight_rad),
     )
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """The experiment again and again, other bars and other noise each time."""
+
+    repeats: int
+    bent_within: int
+    """In how many all ten fresh bars stayed within the rated accuracy."""
+    straight_within: int
+    true_arm_within: int
+    """The same for the bent probe by the true arm: noise alone leaves the limit now and then."""
+    bent_rms_mm: float
+    """Of all fresh bars of all repeats."""
+    straight_rms_mm: float
+    true_arm_rms_mm: float
+
+
+def repeat_experiment(seed: int, repeats: int, progress: Progress | None) -> Repeated:
+    """`repeats` experiments; that of `rerun_experiment` with the same seed is not among them."""
+    errors = np.empty((3, repeats, FRESH_BARS))
+    for k in range(repeats):
+        if progress is not None:
+            progress("experiment", k, repeats)
+        found = rerun_experiment(seed + 1000 * (k + 1))
+        errors[:, k] = found.bent_errors_mm, found.straight_errors_mm, found.bent_errors_true_arm_mm
+    within = (np.abs(errors) <= RATED_MM).all(axis=2).sum(axis=1)
+    rms_mm = np.sqrt((errors**2).mean(axis=(1, 2)))
+    return Repeated(repeats, *(int(count) for count in within), *(float(value) for value in rms_mm))
 
 
 def _start(arm: Arm, rng: np.random.Generator) -> Arm:

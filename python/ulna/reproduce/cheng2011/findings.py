@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ulna.files.output import output_folder
 from ulna.reproduce.cheng2011.arms import RATED_MM
 from ulna.reproduce.cheng2011.convergence import Convergence
-from ulna.reproduce.cheng2011.experiment import Experiment
+from ulna.reproduce.cheng2011.experiment import Experiment, Repeated
 from ulna.reproduce.cheng2011.simulation import Simulated
 
 if TYPE_CHECKING:
@@ -22,6 +22,9 @@ FORMAT = "ulna-reproduction/1"
 FILES = ("cheng2011.json", "bars.svg", "bars.png", "convergence.svg", "convergence.png")
 
 EXACT_RAD, EXACT_MM = 1e-9, 1e-6
+
+USUALLY = 0.85
+"""Share of repeats in which all ten bars must be within the rated accuracy; the true arm itself has 0.97."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,7 @@ class Findings:
     simulation: list[Simulated]
     convergence: list[Convergence]
     experiment: Experiment
+    repeated: Repeated
 
     @property
     def agrees(self) -> bool:
@@ -99,22 +103,31 @@ class Findings:
         return claims
 
     def of_experiment(self) -> list[Claim]:
-        """Fresh bars, and the straight probe from one seat."""
-        bent, straight = (
-            max(map(abs, errors)) for errors in (self.experiment.bent_errors_mm, self.experiment.straight_errors_mm)
-        )
+        """Fresh bars, and the straight probe from one seat.
+
+        Ten bars are a small sample: with this noise even the true arm leaves the limit now and then. So the bars shown
+        are one draw, and what is asked is that most of many draws stay within.
+        """
         theta0, r, h = self.experiment.straight
         near = all(row.u is not None and abs(row.found - row.truth) < 4 * row.u for row in (r, h))
-        limit = f"± {RATED_MM} mm"
+        again = self.repeated
         return [
-            Claim("ten fresh bars, bent probe", f"within {limit}", f"largest {bent:.4f} mm", bent <= RATED_MM),
+            self._fresh_bars("bent", self.experiment.bent_errors_mm, again.bent_within),
             Claim("straight probe, 32 poses in a seat: theta0, rad", "-1.8676", _with_u(theta0), None),
             Claim("… r, mm", "0.0965", _with_u(r), near),
             Claim("… h, mm", "238.5596", _with_u(h), near),
-            Claim(
-                "ten fresh bars, straight probe", f"within {limit}", f"largest {straight:.4f} mm", straight <= RATED_MM
-            ),
+            self._fresh_bars("straight", self.experiment.straight_errors_mm, again.straight_within),
         ]
+
+    def _fresh_bars(self, probe: str, errors_mm: list[float], within: int) -> Claim:
+        again = self.repeated
+        largest = max(map(abs, errors_mm))
+        return Claim(
+            f"ten fresh bars, {probe} probe",
+            f"within ± {RATED_MM} mm",
+            f"largest {largest:.4f} mm; within in {_percent(within, again.repeats)} of {again.repeats} repeats",
+            largest <= RATED_MM and within >= USUALLY * again.repeats,
+        )
 
     def table(self) -> RenderableType:
         """The paper's numbers beside ours, then the parameters of the virtual experiment; 80 columns."""
@@ -132,6 +145,7 @@ class Findings:
             "simulation": [dataclasses.asdict(part) for part in self.simulation],
             "convergence": [dataclasses.asdict(part) for part in self.convergence],
             "experiment": dataclasses.asdict(self.experiment),
+            "repeated": dataclasses.asdict(self.repeated),
         }
 
     def save(self, folder: Path, force: bool = False) -> None:

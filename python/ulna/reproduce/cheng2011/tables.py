@@ -110,7 +110,12 @@ def _numbers(row: Calibrated) -> tuple[str, str, str, str, str]:
 
 def _bars(found: Findings) -> Table:
     experiment = found.experiment
-    table = _plain("Ten fresh bars: error of the length, µm", "The true arm's errors are those of noise alone.")
+    table = _plain(
+        "Ten fresh bars: error of the length, µm",
+        f"The true arm's errors are those of noise alone. Over {found.repeated.repeats} repeats the rms is "
+        f"{1000 * found.repeated.bent_rms_mm:.1f} µm bent, {1000 * found.repeated.straight_rms_mm:.1f} µm straight, "
+        f"{1000 * found.repeated.true_arm_rms_mm:.1f} µm by the true arm.",
+    )
     table.add_column("probe, arm", no_wrap=True)
     for number in range(1, len(experiment.bent_errors_mm) + 1):
         table.add_column(str(number), justify="right", no_wrap=True)
