@@ -8,7 +8,8 @@ use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use ulna::arm::{Joint, JointModel, Probe};
 use ulna::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{self, batch};
+use ulna::kinematics::{self, Chain, Poses, batch};
+use ulna::simd::Columns;
 
 /// Geometry of an arm and its probes. Immutable.
 #[pyclass(frozen, module = "ulna._core")]
@@ -68,7 +69,8 @@ impl Arm {
         }
         for (name, array) in names.iter().zip(&arrays[..5]) {
             if array[n - 1] != 0.0 {
-                let message = format!("{name} of the last joint is {}; it carries the probe and must have 0", array[n - 1]);
+                let message =
+                    format!("{name} of the last joint is {}; it carries the probe and must have 0", array[n - 1]);
                 return Err(UlnaError::new_err(message));
             }
         }
@@ -76,7 +78,8 @@ impl Arm {
             let (d_mm, beta_rad) = (arrays[3][i], arrays[4][i]);
             let (unused, value) = if hayati[i] { ("d", d_mm) } else { ("beta", beta_rad) };
             if value != 0.0 {
-                let message = format!("joint {} has {unused} = {value}, which its model does not use; expected 0", i + 1);
+                let message =
+                    format!("joint {} has {unused} = {value}, which its model does not use; expected 0", i + 1);
                 return Err(UlnaError::new_err(message));
             }
             Ok(Joint {
@@ -95,10 +98,10 @@ impl Arm {
             let message = format!("{} tips were given for {} probes", tips.len() / 3, probe_names.len());
             return Err(UlnaError::new_err(message));
         }
-        let probes = probe_names.into_iter().zip(tips.chunks_exact(3)).map(|(name, t)| Probe {
-            name,
-            tip_mm: [t[0], t[1], t[2]],
-        });
+        let probes = probe_names
+            .into_iter()
+            .zip(tips.chunks_exact(3))
+            .map(|(name, t)| Probe { name, tip_mm: [t[0], t[1], t[2]] });
         let inner = ulna::arm::Arm::new(joints, arrays[5][n - 1], probes.collect()).map_err(raise)?;
         Ok(Arm { inner })
     }
@@ -147,7 +150,7 @@ impl Arm {
         probe: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let q = self.angles(&q_rad)?;
-        let chain = batch::Chain::new(&self.inner);
+        let chain = Chain::new(&self.inner);
         let count = q.len() / self.inner.encoders();
         let mut out = vec![0.0; 3 * count];
         let one = match &probe {
@@ -165,9 +168,9 @@ impl Arm {
             }
             let tips = each.iter().map(|&p| self.probe(p)).collect::<PyResult<Vec<_>>>()?;
             py.detach(|| {
-                let poses = batch::Poses::from_rows(&q, self.inner.encoders());
-                let tips = batch::Columns::from_rows(tips.as_flattened(), 3);
-                let mut columns = batch::Columns::zeros(3, count);
+                let poses = Poses::from_rows(&q, self.inner.encoders());
+                let tips = Columns::from_rows(tips.as_flattened(), 3);
+                let mut columns = Columns::zeros(3, count);
                 batch::tips_mm(&chain, &poses, &tips, &mut columns);
                 for (row, p) in out.chunks_exact_mut(3).enumerate() {
                     p.copy_from_slice(&[0, 1, 2].map(|j| columns.column(j)[row]));
@@ -202,7 +205,7 @@ impl Arm {
         let count = self.inner.parameter_count();
         let out = py.detach(|| {
             let mut out = vec![0.0; q.len() / self.inner.encoders() * 3 * count];
-            batch::for_each_derivative(&batch::Chain::new(&self.inner), tip, &q, |row, component, column, value| {
+            batch::for_each_derivative(&Chain::new(&self.inner), tip, &q, |row, component, column, value| {
                 let joints = self.inner.joint_parameter_count();
                 let column = if column < joints { column } else { column - joints + self.inner.tip_offset(probe) };
                 if column < self.inner.tip_offset(probe) + 3 {
@@ -227,7 +230,7 @@ impl Arm {
         let joints = self.inner.joint_parameter_count();
         let out = py.detach(|| {
             let mut out = vec![0.0; q.len() * 3];
-            batch::for_each_derivative(&batch::Chain::new(&self.inner), tip, &q, |row, component, column, value| {
+            batch::for_each_derivative(&Chain::new(&self.inner), tip, &q, |row, component, column, value| {
                 let (encoder, value) = match column {
                     c if c < joints && c % 4 == 0 => (c / 4, -signs[c / 4] * value),
                     c if c == joints + 3 => (n - 1, signs[n - 1] * value),
@@ -290,9 +293,7 @@ impl Arm {
             let message = format!("{} limits were given for {n} joints", limits.len() / 2);
             return Err(UlnaError::new_err(message));
         }
-        let limits = Limits {
-            range_rad: limits.chunks_exact(2).map(|l| (l[0], l[1])).collect(),
-        };
+        let limits = Limits { range_rad: limits.chunks_exact(2).map(|l| (l[0], l[1])).collect() };
         let mut postures = vec![f64::NAN; points.len() / 3 * n];
         let mut reached = vec![false; points.len() / 3];
         let watch = crate::watch::Watch::new(None);

@@ -3,7 +3,12 @@
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 
-pyo3::create_exception!(_core, UlnaError, PyValueError, "A question that the core cannot answer, in words for the user.");
+pyo3::create_exception!(
+    _core,
+    UlnaError,
+    PyValueError,
+    "A question that the core cannot answer, in words for the user."
+);
 
 /// Maps the core's errors.
 pub fn raise(error: ulna::Error) -> PyErr {

@@ -97,7 +97,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    fn group<'a>(groups: &'a [Unweighted], group: usize) -> PyResult<&'a Unweighted> {
+    fn group(groups: &[Unweighted], group: usize) -> PyResult<&Unweighted> {
         let missing = || UlnaError::new_err(format!("group {group} does not exist; there are {}", groups.len()));
         groups.get(group).ok_or_else(missing)
     }
@@ -107,9 +107,7 @@ impl Fitted {
 impl Fitted {
     #[getter]
     fn arm(&self) -> Arm {
-        Arm {
-            inner: self.inner.arm.clone(),
-        }
+        Arm { inner: self.inner.arm.clone() }
     }
 
     #[getter]
@@ -203,9 +201,7 @@ impl Fitted {
 
     #[getter]
     fn identifiability(&self) -> Identifiability {
-        Identifiability {
-            inner: self.inner.identifiability.clone(),
-        }
+        Identifiability { inner: self.inner.identifiability.clone() }
     }
 
     #[getter]
@@ -289,10 +285,7 @@ pub fn fit(
         max_iterations,
         seed,
         search_starts,
-        known: Known {
-            length_mm: known_length_mm,
-            angle_rad: known_angle_rad,
-        },
+        known: Known { length_mm: known_length_mm, angle_rad: known_angle_rad },
     };
     let inner = &mut problem.inner;
     let inner = watched(py, progress, |watch| calibrate::fit(inner, &free, &options, watch))?;
@@ -310,10 +303,7 @@ pub fn identify(
     known_angle_rad: f64,
 ) -> PyResult<Identifiability> {
     let free = free(&problem, &hold)?;
-    let known = Known {
-        length_mm: known_length_mm,
-        angle_rad: known_angle_rad,
-    };
+    let known = Known { length_mm: known_length_mm, angle_rad: known_angle_rad };
     let inner = &mut problem.inner;
     let inner = watched(py, None, |watch| calibrate::identify(inner, &free, known, watch))?;
     Ok(Identifiability { inner })
@@ -338,22 +328,12 @@ pub fn recalibrate<'py>(
     let inner = &problem.inner;
     let truth = &truth.inner;
     let done = watched(py, progress, |watch| {
-        let repeat = Repeat {
-            truth,
-            runs,
-            seed,
-            threads,
-            uncertainties,
-        };
+        let repeat = Repeat { truth, runs, seed, threads, uncertainties };
         monte_carlo::recalibrate(inner, &free, &repeat, watch)
     })?;
     let count = inner.arm().parameter_count();
     let parameters = done.iter().flat_map(|run| run.parameters.iter().copied()).collect();
     let u = done.iter().flat_map(|run| run.u.iter().copied()).collect();
     let converged = done.iter().map(|run| run.converged);
-    Ok((
-        array2(py, parameters, count)?,
-        array2(py, u, count)?,
-        PyArray1::from_iter(py, converged),
-    ))
+    Ok((array2(py, parameters, count)?, array2(py, u, count)?, PyArray1::from_iter(py, converged)))
 }

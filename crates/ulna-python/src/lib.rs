@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 /// Which instruction set the batch kernels run on.
 #[pyfunction]
 fn simd_level() -> &'static str {
-    ulna::kinematics::batch::simd_level()
+    ulna::simd::simd_level()
 }
 
 #[pymodule]

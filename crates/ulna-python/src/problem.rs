@@ -88,9 +88,7 @@ impl Problem {
 
     #[getter]
     fn arm(&self) -> Arm {
-        Arm {
-            inner: self.inner.arm().clone(),
-        }
+        Arm { inner: self.inner.arm().clone() }
     }
 
     fn with_arm(&self, arm: &Arm) -> PyResult<Problem> {

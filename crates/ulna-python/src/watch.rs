@@ -25,14 +25,7 @@ impl Watch {
     /// With a callable of (stage, done, total), or none.
     pub fn new(report: Option<Py<PyAny>>) -> Watch {
         let now = Instant::now();
-        Watch {
-            report,
-            state: Mutex::new(State {
-                asked: now,
-                told: now,
-                failure: None,
-            }),
-        }
+        Watch { report, state: Mutex::new(State { asked: now, told: now, failure: None }) }
     }
 
     /// The exception that stopped the work, if one did.

@@ -1,38 +1,162 @@
-//! Timing.
+//! Timings of the core, one thread unless said otherwise; `--json` prints them for `make bench`.
+//!
+//! The arm is the assumed truth of Cheng 2011, Table 2 (bent probe, r = 10 mm); angles are uniform in ±3 rad; fits start
+//! from Table 3. Each figure is the best of several runs: the machine is shared, and what is slower is somebody else.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::hint::black_box;
 use std::time::Instant;
-use ulna::{arm::*, kinematics::batch::*};
+use ulna::arm::{Arm, Joint, JointModel, Probe};
+use ulna::assembly::Assembly;
+use ulna::calibrate::{Options, fit, solve};
+use ulna::kinematics::{Chain, Poses, batch};
+use ulna::monitor::Unwatched;
+use ulna::monte_carlo::{Repeat, recalibrate};
+use ulna::problem::Problem;
+use ulna::residuals::Noise;
+use ulna::residuals::length::LengthRows;
+use ulna::simd::{Columns, simd_level};
+use ulna::solver::{LeastSquares, RowBlock, RowSink};
+
+const H: f64 = std::f64::consts::FRAC_PI_2;
+const TABLE_2: [[f64; 4]; 6] = [
+    [0.0, -H, 40.0, 250.0],
+    [2.2689, H, -40.0, 0.0],
+    [0.0, -H, 30.0, 450.0],
+    [2.2689, H, -30.0, 0.0],
+    [0.0, -H, 30.0, 450.0],
+    [2.2689, H, -30.0, 0.0],
+];
+const TABLE_3: [[f64; 4]; 6] = [
+    [0.1, -1.57, 35.0, 260.0],
+    [2.2, 1.57, -35.0, 0.0],
+    [0.1, -1.57, 35.0, 400.0],
+    [2.2, 1.57, -35.0, 0.0],
+    [0.1, -1.57, 35.0, 400.0],
+    [2.2, 1.57, -35.0, 0.0],
+];
+
+fn arm(dh: [[f64; 4]; 6], tip_mm: [f64; 3]) -> Arm {
+    let joint = |p: [f64; 4]| Joint {
+        theta0_rad: p[0],
+        alpha_rad: p[1],
+        a_mm: p[2],
+        d_mm: p[3],
+        beta_rad: 0.0,
+        sign: 1.0,
+        model: JointModel::Dh,
+    };
+    let probe = Probe { name: "bent".into(), tip_mm };
+    Arm::new(dh.map(joint).to_vec(), 1.0, vec![probe]).expect("a valid arm")
+}
+
+/// Seconds of the best of `runs`.
+fn best(runs: usize, mut work: impl FnMut()) -> f64 {
+    let once = |work: &mut dyn FnMut()| {
+        let begin = Instant::now();
+        work();
+        begin.elapsed().as_secs_f64()
+    };
+    (0..runs).map(|_| once(&mut work)).fold(f64::MAX, f64::min)
+}
+
+/// Takes rows and does nothing with them.
+struct Dropped;
+
+impl RowSink for Dropped {
+    fn fold(&mut self, block: &mut RowBlock) {
+        black_box(block.rows);
+    }
+}
+
+fn angles(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
+    (0..count).map(|_| rng.random_range(-3.0..3.0)).collect()
+}
+
+/// Lengths that are exact for the truth.
+fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> Problem {
+    let (truth, start) = (arm(TABLE_2, [10.0, 0.0, 200.0]), arm(TABLE_3, [5.0, 0.1, 180.0]));
+    let (q, p) = (angles(rng, 7 * count), angles(rng, 7 * count));
+    let tips = |angles: &[f64]| {
+        let mut out = vec![0.0; 3 * count];
+        batch::tips_from_rows_mm(&Chain::new(&truth), [10.0, 0.0, 200.0], angles, &mut out);
+        out
+    };
+    let (from, to) = (tips(&q), tips(&p));
+    let distance = |k: usize| (0..3).map(|j| (from[3 * k + j] - to[3 * k + j]).powi(2)).sum::<f64>().sqrt();
+    let length_mm: Vec<f64> = (0..count).map(distance).collect();
+    let mut problem = Problem::new(start, noise).expect("a valid problem");
+    let rows = LengthRows { q_rad: &q, p_rad: &p, probe: &vec![0; count], length_mm: &length_mm };
+    problem.add_lengths("bar", rows, 0.0).expect("valid rows");
+    problem
+}
+
+/// A line of what the system says of this process's memory, MB; 0 where it does not say.
+fn memory_mb(line: &str) -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let found = status.lines().find(|l| l.starts_with(line));
+    found.and_then(|l| l.split_whitespace().nth(1)).and_then(|kb| kb.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
+}
+
 fn main() {
-    let h = std::f64::consts::FRAC_PI_2;
-    let joint = |p: [f64; 4]| Joint { theta0_rad: p[0], alpha_rad: p[1], a_mm: p[2], d_mm: p[3], beta_rad: 0.0, sign: 1.0, model: JointModel::Dh };
-    let dh = [[0.0, -h, 40.0, 250.0],[2.2689, h, -40.0, 0.0],[0.0, -h, 30.0, 450.0],[2.2689, h, -30.0, 0.0],[0.0, -h, 30.0, 450.0],[2.2689, h, -30.0, 0.0]];
-    let arm = Arm::new(dh.map(joint).to_vec(), 1.0, vec![Probe { name: "bent".into(), tip_mm: [10.0, 0.0, 200.0] }]).unwrap();
-    let chain = Chain::new(&arm);
-    let n = 1_000_000;
-    let q: Vec<f64> = (0..7 * n).map(|i| ((i as f64 * 0.618).fract() - 0.5) * 6.0).collect();
-    let mut poses = Poses::from_rows(&q, 7);
-    let mut out = Columns::zeros(3, n);
-    println!("{}", simd_level());
-    for _ in 0..5 {
-        let t = Instant::now();
-        tips_of_probe_mm(&chain, &poses, [10.0, 0.0, 200.0], &mut out);
-        println!("forward {:.1} M/s", n as f64 / t.elapsed().as_secs_f64() / 1e6);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(2011);
+    let free: Vec<usize> = (0..27).collect();
+    let mut figures: Vec<(String, f64)> = Vec::new();
+
+    // fits first, the largest of them before anything else has taken memory
+    let mut fits = Vec::new();
+    for (count, runs) in [(1_000_000, 3), (10_000, 20), (101, 2000)] {
+        let mut problem = problem(&mut rng, count, None);
+        // forget the peak that making the readings left, so that the fit's own shows
+        let _ = std::fs::write("/proc/self/clear_refs", "5");
+        let before_mb = memory_mb("VmRSS");
+        let solved = best(runs, || {
+            black_box(solve(&mut problem, &free, &Options::default(), &Unwatched).expect("a fit"));
+        });
+        if count == 1_000_000 {
+            figures.push(("fit_1000000_memory_beyond_data_mb".into(), memory_mb("VmHWM") - before_mb));
+        }
+        let judged = best(runs.min(50), || {
+            black_box(fit(&mut problem, &free, &Options::default(), &Unwatched).expect("a fit"));
+        });
+        fits.push((count, solved * 1e3, judged * 1e3));
     }
-    let mut rows = vec![0.0; 3 * n];
-    for _ in 0..3 {
-        let t = Instant::now();
-        tips_from_rows_mm(&chain, [10.0, 0.0, 200.0], &q, &mut rows);
-        println!("rows {:.1} M/s", n as f64 / t.elapsed().as_secs_f64() / 1e6);
+
+    let truth = arm(TABLE_2, [10.0, 0.0, 200.0]);
+    let million = angles(&mut rng, 7_000_000);
+    let poses = Poses::from_rows(&million, 7);
+    let mut out = Columns::zeros(3, 1_000_000);
+    let chain = Chain::new(&truth);
+    let forward = best(7, || batch::tips_of_probe_mm(&chain, &poses, [10.0, 0.0, 200.0], &mut out));
+    figures.push(("forward_poses_per_s".into(), 1e6 / forward));
+
+    let mut lengths = problem(&mut rng, 10_000, None);
+    let x = lengths.arm().parameters();
+    lengths.weigh(&x);
+    let mut assembly = Assembly::new(&lengths, &free, &[], &Unwatched);
+    let rows = best(200, || assembly.rows(&x, true, &mut Dropped).expect("rows"));
+    figures.push(("residual_jacobian_poses_per_s".into(), 2e4 / rows));
+
+    let noise = Noise { encoder_rad: vec![5e-6; 7], seat_mm: 0.008 };
+    let noisy = problem(&mut rng, 101, Some(noise));
+    let mut repeats = Vec::new();
+    for threads in [1, 2] {
+        let repeat = Repeat { truth: &truth, runs: 1000, seed: 1, threads, uncertainties: false };
+        let seconds = best(7, || {
+            black_box(recalibrate(&noisy, &free, &repeat, &Unwatched).expect("fits"));
+        });
+        repeats.push((threads, seconds));
     }
-    poses.keep_sin_cos();
-    for _ in 0..3 {
-        let t = Instant::now();
-        tips_of_probe_mm(&chain, &poses, [10.0, 0.0, 200.0], &mut out);
-        println!("kept {:.1} M/s", n as f64 / t.elapsed().as_secs_f64() / 1e6);
-    }
-    let mut worst = 0.0f64;
-    for i in (0..n).step_by(1000) {
-        let p = ulna::kinematics::tip_mm(&arm, 0, &q[7*i..7*i+7]);
-        worst = worst.max((p.x - out.column(0)[i]).abs()).max((p.z-rows[3*i+2]).abs());
-    }
-    println!("worst {worst:e}");
+
+    let list = |items: Vec<String>| items.join(", ");
+    let solve_ms = list(fits.iter().map(|(n, ms, _)| format!("\"{n}\": {ms:.5}")).collect());
+    let fit_ms = list(fits.iter().map(|(n, _, ms)| format!("\"{n}\": {ms:.5}")).collect());
+    let repeat_s = list(repeats.iter().map(|(t, s)| format!("\"{t}\": {s:.5}")).collect());
+    let plain = list(figures.iter().map(|(name, value)| format!("\"{name}\": {value:.3}")).collect());
+    println!(
+        "{{\"simd\": \"{}\", {plain}, \"fit_ms\": {{{solve_ms}}}, \"fit_and_judge_ms\": {{{fit_ms}}}, \
+         \"recalibrate_1000_s\": {{{repeat_s}}}}}",
+        simd_level()
+    );
 }

@@ -45,12 +45,7 @@ impl Joint {
 
     /// The same joint with other numbers, in the same order.
     pub fn with_parameters(&self, p: &[f64]) -> Joint {
-        let mut joint = Joint {
-            theta0_rad: p[0],
-            alpha_rad: p[1],
-            a_mm: p[2],
-            ..*self
-        };
+        let mut joint = Joint { theta0_rad: p[0], alpha_rad: p[1], a_mm: p[2], ..*self };
         match self.model {
             JointModel::Dh => joint.d_mm = p[3],
             JointModel::Hayati => joint.beta_rad = p[3],
@@ -107,11 +102,7 @@ impl Arm {
         if probes.is_empty() {
             return Err(Error::NoProbe);
         }
-        let arm = Arm {
-            joints,
-            last_sign,
-            probes,
-        };
+        let arm = Arm { joints, last_sign, probes };
         for (i, sign) in arm.signs().enumerate() {
             if sign.abs() != 1.0 {
                 return Err(Error::OutOfRange {
@@ -146,10 +137,7 @@ impl Arm {
 
     /// The sign of every encoder, the last included.
     pub fn signs(&self) -> impl Iterator<Item = f64> + '_ {
-        self.joints
-            .iter()
-            .map(|j| j.sign)
-            .chain(std::iter::once(self.last_sign))
+        self.joints.iter().map(|j| j.sign).chain(std::iter::once(self.last_sign))
     }
 
     /// Number of parameters of the joints, 4(n-1).
@@ -222,12 +210,7 @@ impl Arm {
         Arm::new(
             joints.map(|(j, p)| j.with_parameters(p)).collect(),
             self.last_sign,
-            probes
-                .map(|(probe, t)| Probe {
-                    name: probe.name.clone(),
-                    tip_mm: [t[0], t[1], t[2]],
-                })
-                .collect(),
+            probes.map(|(probe, t)| Probe { name: probe.name.clone(), tip_mm: [t[0], t[1], t[2]] }).collect(),
         )
     }
 
@@ -258,21 +241,6 @@ pub(crate) mod samples {
         )
     }
 
-    /// Table 3 of Cheng 2011 (start values) with the tip given.
-    pub fn table3(tip_mm: [f64; 3]) -> Arm {
-        arm(
-            &[
-                [0.1, -1.57, 35.0, 260.0],
-                [2.2, 1.57, -35.0, 0.0],
-                [0.1, -1.57, 35.0, 400.0],
-                [2.2, 1.57, -35.0, 0.0],
-                [0.1, -1.57, 35.0, 400.0],
-                [2.2, 1.57, -35.0, 0.0],
-            ],
-            tip_mm,
-        )
-    }
-
     /// A DH arm with all signs +1 and one probe named `bent`.
     pub fn arm(dh: &[[f64; 4]], tip_mm: [f64; 3]) -> Arm {
         let joint = |p: &[f64; 4]| Joint {
@@ -284,10 +252,7 @@ pub(crate) mod samples {
             sign: 1.0,
             model: JointModel::Dh,
         };
-        let probe = Probe {
-            name: "bent".into(),
-            tip_mm,
-        };
+        let probe = Probe { name: "bent".into(), tip_mm };
         Arm::new(dh.iter().map(joint).collect(), 1.0, vec![probe]).unwrap()
     }
 }

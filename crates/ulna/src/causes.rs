@@ -1,6 +1,6 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
-use crate::arm::{JointModel, Unit};
+use crate::arm::{Arm, JointModel};
 use crate::identifiability::Context;
 use crate::kinematics::{jacobian, tip_mm};
 use crate::problem::off_axis_mm;
@@ -67,20 +67,24 @@ const ON_AXIS: f64 = 1e-6;
 /// A motion explained but for this part of its size is explained.
 const EXPLAINED: f64 = 1e-7;
 
-pub(crate) fn explain(direction: &[f64], context: &Context) -> Because {
-    let takes_part: Vec<usize> = context.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
+/// Names the cause of a lost direction, looking at what it does to the tip of `arm`.
+pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Because {
+    let takes_part: Vec<usize> =
+        context.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
     let joints = context.arm.joint_parameter_count();
     let unused = |&j: &usize| j >= joints && !context.probes_used[(j - joints) / 3];
-    if takes_part.iter().all(|j| unused(j)) {
+    if takes_part.iter().all(unused) {
         let probe = &context.arm.probes()[(takes_part.first().copied().unwrap_or(joints) - joints) / 3].name;
         return Because {
             cause: Cause::ProbeUnused,
             because: format!("no reading was taken with probe {probe}"),
-            remedy: format!("take readings with probe {probe} (32 poses in one seat are enough once the arm is known), or hold probe.{probe}.*"),
+            remedy: format!(
+                "take readings with probe {probe} (32 poses in one seat are enough once the arm is known), or hold probe.{probe}.*"
+            ),
         };
     }
-    let motion = Motion::new(direction, context);
-    if let Some(because) = moves_nothing(&motion, &takes_part, context) {
+    let motion = Motion::new(direction, arm, context);
+    if let Some(because) = moves_nothing(&motion, &takes_part, arm, context) {
         return because;
     }
     if motion.explained_by(false) {
@@ -91,27 +95,37 @@ pub(crate) fn explain(direction: &[f64], context: &Context) -> Because {
         };
     }
     if motion.explained_by(true) {
-        return Because {
-            cause: Cause::Scale,
-            because: "it only scales the arm: no length is known in these readings".into(),
-            remedy: "add readings of a bar of known length, or hold one known length of the arm".into(),
-        };
+        return scale();
     }
     if let Some(joint) = still_joint(&takes_part, context) {
         return Because {
             cause: Cause::JointStill,
             because: format!("joint {} was never moved in these readings", joint + 1),
-            remedy: format!("take readings with joint {} turned over its whole travel, or hold these parameters", joint + 1),
+            remedy: format!(
+                "take readings with joint {} turned over its whole travel, or hold these parameters",
+                joint + 1
+            ),
         };
     }
     Because {
         cause: Cause::Coverage,
         because: "it moves the tip, but not in anything that was read: the poses are too few or too much alike".into(),
-        remedy: "take readings at other places and directions, every joint turned over its travel; or hold these parameters".into(),
+        remedy:
+            "take readings at other places and directions, every joint turned over its travel; or hold these parameters"
+                .into(),
     }
 }
 
-fn moves_nothing(motion: &Motion, takes_part: &[usize], context: &Context) -> Option<Because> {
+/// What is said where the size of the arm is lost.
+pub(crate) fn scale() -> Because {
+    Because {
+        cause: Cause::Scale,
+        because: "it only scales the arm: no length is known in these readings".into(),
+        remedy: "add readings of a bar of known length, or hold one known length of the arm".into(),
+    }
+}
+
+fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, context: &Context) -> Option<Because> {
     if motion.size > EXPLAINED * motion.effort {
         return None;
     }
@@ -121,7 +135,7 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], context: &Context) -> Op
         let length = Vector3::from(probe.tip_mm).norm();
         off_axis_mm(probe.tip_mm) <= ON_AXIS * length.max(1.0)
     };
-    let read_on_axis = context.arm.probes().iter().zip(context.probes_used).all(|(p, used)| !used || on_axis(p));
+    let read_on_axis = arm.probes().iter().zip(context.probes_used).all(|(p, used)| !used || on_axis(p));
     if takes_part.iter().any(|&j| j >= last_link) && read_on_axis {
         return Some(Because {
             cause: Cause::ProbeOnAxis,
@@ -129,12 +143,16 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], context: &Context) -> Op
             remedy: "measure with a probe at least 10 mm off the last axis, or with a second straight probe of another length".into(),
         });
     }
-    for (i, joint) in context.arm.joints().iter().enumerate() {
+    for (i, joint) in arm.joints().iter().enumerate() {
         let parallel = joint.model == JointModel::Dh && joint.alpha_rad.sin().abs() < PARALLEL_RAD;
         if parallel && takes_part.contains(&(4 * i + 3)) {
             return Some(Because {
                 cause: Cause::ParallelAxes,
-                because: format!("the axes of joints {} and {} are parallel: an offset along one is an offset along the other", i + 1, i + 2),
+                because: format!(
+                    "the axes of joints {} and {} are parallel: an offset along one is an offset along the other",
+                    i + 1,
+                    i + 2
+                ),
                 remedy: format!("write joint {} with model = \"hayati\" (beta instead of d)", i + 1),
             });
         }
@@ -142,7 +160,10 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], context: &Context) -> Op
     still_joint(takes_part, context).map(|joint| Because {
         cause: Cause::JointStill,
         because: format!("joint {} was never moved in these readings", joint + 1),
-        remedy: format!("take readings with joint {} turned over its whole travel, or hold these parameters", joint + 1),
+        remedy: format!(
+            "take readings with joint {} turned over its whole travel, or hold these parameters",
+            joint + 1
+        ),
     })
 }
 
@@ -171,20 +192,18 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(direction: &[f64], context: &Context) -> Motion {
-        let units = context.arm.parameter_units();
+    fn new(direction: &[f64], arm: &Arm, context: &Context) -> Motion {
         let (mut tips, mut moves, mut effort) = (Vec::new(), Vec::new(), 0.0);
         for (probe, q_rad) in context.poses {
-            let jacobian = jacobian(context.arm, *probe, q_rad);
+            let jacobian = jacobian(arm, *probe, q_rad);
             let mut moved = Vector3::zeros();
             for (&j, &weight) in context.free.iter().zip(direction) {
                 let part: Vector3<f64> = jacobian.column(j) * weight;
                 moved += part;
                 effort += part.norm_squared();
-                let _ = units[j] == Unit::Rad;
             }
             moves.push(moved);
-            tips.push(tip_mm(context.arm, *probe, q_rad).coords);
+            tips.push(tip_mm(arm, *probe, q_rad).coords);
         }
         let count = moves.len().max(1) as f64;
         Motion {

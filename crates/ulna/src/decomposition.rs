@@ -25,25 +25,27 @@ pub struct Decomposition {
     pub singular_values: Vec<f64>,
     /// how many of them count
     pub rank: usize,
+    /// the symmetries, orthonormal in scaled coordinates over the kept columns
+    pub known: Vec<Vec<f64>>,
     u: Mat<f64>,
     v: Mat<f64>,
 }
 
 impl Decomposition {
-    /// From the triangle of the first `unknowns` columns; `symmetry` is a unit direction over the unknowns that is known to
-    /// change nothing that could be measured, and is taken out.
-    pub fn new(triangle: &Triangle, unknowns: usize, natural_scale: &[f64], symmetry: Option<&[f64]>) -> Decomposition {
+    /// From the triangle of the first `unknowns` columns; `symmetries` are directions over the unknowns that are known to
+    /// change nothing that could be measured, and are taken out.
+    pub fn new(triangle: &Triangle, unknowns: usize, natural_scale: &[f64], symmetries: &[&[f64]]) -> Decomposition {
         let all_norms = &triangle.column_norms()[..unknowns];
         let gone = vanished(all_norms, natural_scale);
         let kept: Vec<usize> = (0..unknowns).filter(|&j| !gone[j]).collect();
         let norms: Vec<f64> = kept.iter().map(|&j| all_norms[j]).collect();
         let n = kept.len();
-        let mut scaled = Mat::from_fn(unknowns, n, |i, j| {
-            if i <= kept[j] { triangle.at(i, kept[j]) / norms[j] } else { 0.0 }
-        });
-        if let Some(direction) = symmetry {
-            let along = faer::Col::from_fn(n, |j| direction[kept[j]] * norms[j]);
-            let along = &along * faer::Scale(1.0 / along.norm_l2().max(f64::MIN_POSITIVE));
+        let mut scaled =
+            Mat::from_fn(unknowns, n, |i, j| if i <= kept[j] { triangle.at(i, kept[j]) / norms[j] } else { 0.0 });
+        let scaled_symmetry = |direction: &&[f64]| (0..n).map(|j| direction[kept[j]] * norms[j]).collect();
+        let known = orthonormal(symmetries.iter().map(scaled_symmetry).collect(), &[]);
+        for direction in &known {
+            let along = faer::Col::from_fn(n, |j| direction[j]);
             let image = &scaled * &along;
             scaled -= &image * along.transpose();
         }
@@ -56,19 +58,8 @@ impl Decomposition {
             Err(_) => (Mat::zeros(unknowns, n), vec![0.0; n], Mat::identity(n, n)),
         };
         let largest = singular_values.first().copied().unwrap_or(0.0);
-        let rank = singular_values
-            .iter()
-            .filter(|&&s| s > RANK_TOLERANCE * largest && s > 0.0)
-            .count();
-        Decomposition {
-            unknowns,
-            kept,
-            norms,
-            singular_values,
-            rank,
-            u,
-            v,
-        }
+        let rank = singular_values.iter().filter(|&&s| s > RANK_TOLERANCE * largest && s > 0.0).count();
+        Decomposition { unknowns, kept, norms, singular_values, rank, known, u, v }
     }
 
     /// For each unknown, whether it takes part in a direction that is not determined.
@@ -78,6 +69,12 @@ impl Decomposition {
             lost[unknown] = (self.rank..self.kept.len()).any(|i| self.v[(a, i)].abs() > LOST_SHARE);
         }
         lost
+    }
+
+    /// An orthonormal basis of what is lost beside the known symmetries, scaled coordinates, over the kept columns.
+    pub fn null_vectors(&self) -> Vec<Vec<f64>> {
+        let null = (self.rank..self.kept.len()).map(|i| self.vector(i)).collect();
+        orthonormal(null, &self.known)
     }
 
     /// Singular vector `i` in scaled coordinates, over the kept columns.
@@ -112,4 +109,25 @@ impl Decomposition {
         }
         covariance
     }
+}
+
+/// What is left of some vectors beside `others`, orthonormal (Gram and Schmidt, twice); dependent ones are dropped.
+fn orthonormal(vectors: Vec<Vec<f64>>, others: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for mut v in vectors {
+        let size = dot(&v, &v).sqrt();
+        for _ in 0..2 {
+            for other in others.iter().chain(&basis) {
+                let along = dot(&v, other);
+                v.iter_mut().zip(other).for_each(|(x, o)| *x -= along * o);
+            }
+        }
+        let left = dot(&v, &v).sqrt();
+        if left > 1e-3 * size {
+            v.iter_mut().for_each(|x| *x /= left);
+            basis.push(v);
+        }
+    }
+    basis
 }

@@ -1,7 +1,8 @@
 //! What the readings determine, what they do not, and why.
 
 use crate::arm::{Arm, Unit};
-use crate::causes::{Because, explain};
+use crate::assembly::Pin;
+use crate::causes::{Because, explain, scale};
 use crate::decomposition::Decomposition;
 
 /// A direction that no reading sees.
@@ -40,10 +41,7 @@ pub struct Known {
 impl Default for Known {
     /// A drawing: 1 mm, 0.01 rad.
     fn default() -> Self {
-        Known {
-            length_mm: 1.0,
-            angle_rad: 0.01,
-        }
+        Known { length_mm: 1.0, angle_rad: 0.01 }
     }
 }
 
@@ -75,7 +73,9 @@ pub(crate) struct Context<'a> {
     /// probe and angles of some of the readings
     pub poses: &'a [(usize, Vec<f64>)],
     pub probes_used: &'a [bool],
-    pub symmetry: Option<&'a [f64]>,
+    /// the arm at the start, where the pinned directions were found
+    pub start: &'a Arm,
+    pub pins: &'a [Pin],
     pub known: Known,
     /// standard deviation of a whitened residual
     pub sigma: f64,
@@ -88,14 +88,17 @@ pub(crate) fn analyse(decomposition: &Decomposition, context: &Context) -> Ident
     let count = context.free.len();
     let all_names = context.arm.parameter_names();
     let names: Vec<String> = context.free.iter().map(|&j| all_names[j].clone()).collect();
-    let directions = lost_directions(decomposition, context.symmetry, count);
-    let lost: Vec<LostDirection> = directions
-        .iter()
-        .map(|direction| LostDirection {
-            combination: combination(direction, &names),
-            because: explain(direction, context),
-        })
-        .collect();
+    let (directions, origins): (Vec<_>, Vec<_>) =
+        lost_directions(decomposition, context.pins, count).into_iter().unzip();
+    let one = |(direction, origin): (&Vec<f64>, &Origin)| LostDirection {
+        combination: combination(direction, &names),
+        because: match origin {
+            Origin::Scale => scale(),
+            Origin::Start => explain(direction, context.start, context),
+            Origin::Here => explain(direction, context.arm, context),
+        },
+    };
+    let lost: Vec<LostDirection> = directions.iter().zip(&origins).map(one).collect();
     let mut singular_values = decomposition.singular_values.clone();
     singular_values.resize(count, 0.0);
     let kept = &decomposition.singular_values[..decomposition.rank];
@@ -119,44 +122,43 @@ fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
     parts.map(|(name, &weight)| (name.clone(), weight)).collect()
 }
 
-/// A sparse basis of what is lost, physical units over all unknowns: vanished columns one by one, a known symmetry, and
-/// the rest of the null space reduced to as few parameters as possible.
-fn lost_directions(decomposition: &Decomposition, symmetry: Option<&[f64]>, count: usize) -> Vec<Vec<f64>> {
+/// Where a lost direction was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Origin {
+    /// known beforehand: no reading knows a length
+    Scale,
+    /// at the start, and pinned there
+    Start,
+    /// at the arm in question
+    Here,
+}
+
+/// A sparse basis of what is lost, physical units over all unknowns: vanished columns one by one, growth, and the rest
+/// reduced to as few parameters as possible.
+fn lost_directions(decomposition: &Decomposition, pins: &[Pin], count: usize) -> Vec<(Vec<f64>, Origin)> {
+    let (kept, norms) = (&decomposition.kept, &decomposition.norms);
     let mut directions = Vec::new();
-    for j in (0..count).filter(|j| !decomposition.kept.contains(j)) {
+    for j in (0..count).filter(|j| !kept.contains(j)) {
         let mut direction = vec![0.0; count];
         direction[j] = 1.0;
-        directions.push(direction);
+        directions.push((direction, Origin::Here));
     }
-    let kept = &decomposition.kept;
-    let n = kept.len();
-    let mut null: Vec<Vec<f64>> = (decomposition.rank..n).map(|i| decomposition.vector(i)).collect();
-    let mut reduced = Vec::new();
-    if let Some(symmetry) = symmetry {
-        let scaled: Vec<f64> = (0..n).map(|a| symmetry[kept[a]] * decomposition.norms[a]).collect();
-        let norm = scaled.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let unit: Vec<f64> = scaled.iter().map(|v| v / norm).collect();
-        // the null space holds it; what remains of each basis vector spans the rest, one vector fewer
-        let overlap = |v: &[f64]| v.iter().zip(&unit).map(|(a, b)| a * b).sum::<f64>();
-        if let Some(most) = (0..null.len()).max_by(|&a, &b| overlap(&null[a]).abs().total_cmp(&overlap(&null[b]).abs())) {
-            null.swap_remove(most);
-            for v in &mut null {
-                let along = overlap(v);
-                v.iter_mut().zip(&unit).for_each(|(a, b)| *a -= along * b);
-            }
-            reduced.push(unit);
-        }
-    }
+    let scaled = |pin: &Pin| kept.iter().zip(norms).map(|(&j, norm)| pin.direction[j] * norm).collect::<Vec<f64>>();
+    let grown: Vec<Vec<f64>> = pins.iter().filter(|p| p.is_scale).map(scaled).collect();
+    let mut pinned: Vec<Vec<f64>> = pins.iter().filter(|p| !p.is_scale).map(scaled).collect();
+    let mut null = decomposition.null_vectors();
+    reduce(&mut pinned);
     reduce(&mut null);
-    reduced.extend(null);
-    for v in reduced {
-        let mut direction = vec![0.0; count];
-        let leading = (0..n).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
-        let unit = v[leading] / decomposition.norms[leading];
-        for a in (0..n).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
-            direction[kept[a]] = v[a] / decomposition.norms[a] / unit;
+    for (vectors, origin) in [(grown, Origin::Scale), (pinned, Origin::Start), (null, Origin::Here)] {
+        for v in vectors {
+            let mut direction = vec![0.0; count];
+            let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
+            let unit = v[leading] / norms[leading];
+            for a in (0..v.len()).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
+                direction[kept[a]] = v[a] / norms[a] / unit;
+            }
+            directions.push((direction, origin));
         }
-        directions.push(direction);
     }
     directions
 }

@@ -82,9 +82,7 @@ mod tests {
     #[test]
     fn reached_points_are_reached_within_limits() {
         let arm = samples::table2(10.0);
-        let limits = Limits {
-            range_rad: vec![(-2.5, 2.5); 7],
-        };
+        let limits = Limits { range_rad: vec![(-2.5, 2.5); 7] };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
         let mut reached = 0;
         for k in 0..200 {
@@ -102,9 +100,7 @@ mod tests {
     #[test]
     fn a_point_out_of_reach_is_refused() {
         let arm = samples::table2(10.0);
-        let limits = Limits {
-            range_rad: vec![(-3.0, 3.0); 7],
-        };
+        let limits = Limits { range_rad: vec![(-3.0, 3.0); 7] };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
         assert!(posture_for_point(&arm, 0, Point3::new(2000.0, 0.0, 0.0), &limits, 40, &mut rng).is_none());
     }

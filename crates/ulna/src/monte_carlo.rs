@@ -1,15 +1,14 @@
 //! Calibrations repeated on new noise: what the uncertainties say, checked against the truth.
 
 use crate::arm::Arm;
-use crate::calibrate::{Options, solve};
+use crate::assembly::{Assembly, Pin, pins};
+use crate::calibrate::judge;
 use crate::covariance::covariance;
-use crate::decomposition::Decomposition;
 use crate::error::{Error, Result};
 use crate::monitor::{Monitor, Stage, Unwatched};
-use crate::problem::{Assembly, Problem};
+use crate::problem::Problem;
 use crate::residuals::Model;
-use crate::solver::LeastSquares;
-use crate::solver::triangle::Triangle;
+use crate::solver::lm::{self, Report, minimize};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
@@ -44,10 +43,14 @@ pub struct Repeat<'a> {
 /// Calibrates `runs` times, from the problem's own arm, on readings that are exact for `truth` plus newly drawn noise.
 ///
 /// # Errors
-/// No stated noise, or whatever [`solve`] says of the first run that fails.
+/// No stated noise, or interrupted.
 pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: &dyn Monitor) -> Result<Vec<Run>> {
     let noise = problem.noise().ok_or(Error::NoNoise)?;
     let truth = Model::new(repeat.truth);
+    let mut problem = problem.clone();
+    problem.weigh(&repeat.truth.parameters());
+    let (pins, _) = pins(&problem, free, &repeat.truth.parameters(), monitor)?;
+    let (problem, pins) = (&problem, pins.as_slice());
     let done = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
     let one = |run: usize| -> Result<Run> {
@@ -56,21 +59,14 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(repeat.seed, run as u64));
         let groups = problem.groups().iter().map(|g| g.redrawn(&truth, noise, &mut rng)).collect();
-        let mut drawn = problem.with_groups(groups);
-        let solution = solve(&mut drawn, free, &Options::default(), &Unwatched)?;
-        let u = if repeat.uncertainties {
-            uncertainties(&drawn, free, &solution.parameters)?
-        } else {
-            vec![f64::NAN; solution.parameters.len()]
-        };
+        let drawn = problem.with_groups(groups);
+        let (found, report) = descend(&drawn, free, pins)?;
+        let u =
+            if repeat.uncertainties { uncertainties(&drawn, free, pins, &found)? } else { vec![f64::NAN; found.len()] };
         if !monitor.progress(Stage::MonteCarlo, done.fetch_add(1, Ordering::Relaxed), repeat.runs) {
             stopped.store(true, Ordering::Relaxed);
         }
-        Ok(Run {
-            parameters: solution.parameters,
-            u,
-            converged: solution.report.termination.converged(),
-        })
+        Ok(Run { parameters: found, u, converged: report.termination.converged() })
     };
     if repeat.threads <= 1 {
         return (0..repeat.runs).map(one).collect();
@@ -81,17 +77,24 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
     }
 }
 
+/// One fit from the problem's own arm, weights as they are: all parameters, and how it ended.
+fn descend(problem: &Problem, free: &[usize], pins: &[Pin]) -> Result<(Vec<f64>, Report)> {
+    let mut parameters = problem.arm().parameters();
+    let mut x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, free, pins, &Unwatched);
+    let report = minimize(&mut assembly, &mut x, &lm::Options::default(), &Unwatched)?;
+    for (&j, value) in free.iter().zip(x) {
+        parameters[j] = value;
+    }
+    Ok((parameters, report))
+}
+
 /// Standard uncertainty of every parameter; NaN where held or not determined.
-fn uncertainties(problem: &Problem, free: &[usize], parameters: &[f64]) -> Result<Vec<f64>> {
-    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
-    let mut assembly = Assembly::new(problem, free, &Unwatched);
-    let mut triangle = Triangle::new(free.len() + assembly.considered());
-    assembly.considered_rows(&x, &mut triangle)?;
-    let symmetry = assembly.scale_direction().map(<[f64]>::to_vec);
-    let decomposition = Decomposition::new(&triangle, free.len(), assembly.natural_scale(), symmetry.as_deref());
+fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[f64]) -> Result<Vec<f64>> {
+    let judged = judge(problem, free, pins, parameters, &Unwatched)?;
     let considered: Vec<f64> = problem.groups().iter().flat_map(|g| g.considered()).map(|c| c.u_mm).collect();
-    let covariance = covariance(&decomposition, &triangle, 1.0, &considered);
-    let lost = decomposition.lost();
+    let covariance = covariance(&judged.decomposition, &judged.triangle, 1.0, &considered);
+    let lost = judged.decomposition.lost();
     let mut u = vec![f64::NAN; parameters.len()];
     for (unknown, &j) in free.iter().enumerate() {
         if !lost[unknown] {

@@ -1,12 +1,10 @@
 //! The one assembly: an arm, readings, and what is free become a least-squares problem.
 
-use crate::arm::{Arm, Unit};
+use crate::arm::{Arm, JointModel};
 use crate::error::{Error, Result};
-use crate::monitor::Monitor;
 use crate::residuals::length::{LengthRows, Lengths};
 use crate::residuals::points::{Features, PointRows, Points};
-use crate::residuals::{Buffers, Model, Noise, Readings, Unknowns, Unweighted, Writer};
-use crate::solver::{LeastSquares, RowSink};
+use crate::residuals::{Model, Noise, Readings, Unweighted};
 use nalgebra::Vector3;
 
 /// Readings of features of placed artefacts, to be explained by one arm.
@@ -57,11 +55,7 @@ impl Problem {
         }
         // noise of nothing weighs nothing: the same as none
         let noise = noise.filter(|n| n.seat_mm > 0.0 || n.encoder_rad.iter().any(|&s| s > 0.0));
-        Ok(Problem {
-            arm,
-            noise,
-            groups: vec![],
-        })
+        Ok(Problem { arm, noise, groups: vec![] })
     }
 
     /// Adds rows of two poses and a length; returns the group's number.
@@ -106,10 +100,7 @@ impl Problem {
         }
         for &value in features.coordinates_mm.iter().flatten() {
             if !value.is_finite() {
-                return Err(Error::NotFinite {
-                    what: format!("a coordinate of artefact {}", features.name),
-                    value,
-                });
+                return Err(Error::NotFinite { what: format!("a coordinate of artefact {}", features.name), value });
             }
         }
         if rows.placement.len() != count {
@@ -136,36 +127,21 @@ impl Problem {
     fn check_angles(&self, what: &str, angles: &[f64], rows: usize) -> Result<()> {
         let expected = rows * self.arm.encoders();
         if angles.len() != expected {
-            return Err(Error::Shape {
-                what: format!("the {what}"),
-                got: angles.len(),
-                expected,
-            });
+            return Err(Error::Shape { what: format!("the {what}"), got: angles.len(), expected });
         }
         match angles.iter().find(|v| !v.is_finite()) {
-            Some(&value) => Err(Error::NotFinite {
-                what: format!("an angle of the {what}"),
-                value,
-            }),
+            Some(&value) => Err(Error::NotFinite { what: format!("an angle of the {what}"), value }),
             None => Ok(()),
         }
     }
 
     fn check_probes(&self, probe: &[usize], rows: usize) -> Result<()> {
         if probe.len() != rows {
-            return Err(Error::Shape {
-                what: "the probe indices".into(),
-                got: probe.len(),
-                expected: rows,
-            });
+            return Err(Error::Shape { what: "the probe indices".into(), got: probe.len(), expected: rows });
         }
         let count = self.arm.probes().len();
         match probe.iter().find(|&&p| p >= count) {
-            Some(&p) => Err(Error::NoSuch {
-                what: "probe",
-                index: p as i64,
-                count,
-            }),
+            Some(&p) => Err(Error::NoSuch { what: "probe", index: p as i64, count }),
             None => Ok(()),
         }
     }
@@ -192,11 +168,18 @@ impl Problem {
 
     /// The same problem with other readings.
     pub(crate) fn with_groups(&self, groups: Vec<Box<dyn Readings>>) -> Problem {
-        Problem {
-            arm: self.arm.clone(),
-            noise: self.noise.clone(),
-            groups,
-        }
+        Problem { arm: self.arm.clone(), noise: self.noise.clone(), groups }
+    }
+
+    /// About `most` of the readings, evenly chosen, every group represented.
+    pub(crate) fn thinned(&self, most: usize) -> Problem {
+        let thin = |group: &dyn Readings| {
+            let part = (most * group.len()).div_ceil(self.readings().max(1));
+            let mut thin = group.thinned(part.max(4));
+            thin.keep_sin_cos();
+            thin
+        };
+        self.with_groups(self.groups.iter().map(|g| thin(g.as_ref())).collect())
     }
 
     /// Number of readings.
@@ -217,6 +200,15 @@ impl Problem {
     /// Whether the base frame is fixed by nothing: every artefact stands freely.
     pub fn base_free(&self) -> bool {
         self.groups.iter().all(|g| g.mirror_free() || g.placement_unknowns() > 0)
+    }
+
+    /// Parameters that only move the base frame, where nothing fixes it: theta0 of joint 1, and d of a DH joint 1.
+    pub fn base_parameters(&self) -> Vec<usize> {
+        match (self.base_free(), self.arm.joints()[0].model) {
+            (false, _) => vec![],
+            (true, JointModel::Dh) => vec![0, 3],
+            (true, JointModel::Hayati) => vec![0],
+        }
     }
 
     /// Whether the mirror image of the arm explains the readings as well.
@@ -280,181 +272,6 @@ fn check_uncertainty(name: &str, u_mm: f64) -> Result<()> {
         value: u_mm,
         expected: "a number not below zero",
     })
-}
-
-/// The free parameters of a problem as unknowns of a least-squares problem.
-pub struct Assembly<'a> {
-    problem: &'a Problem,
-    monitor: &'a dyn Monitor,
-    /// indices of the free parameters
-    free: Vec<usize>,
-    parameters: Vec<f64>,
-    model: Model,
-    unknowns: Vec<Unknowns>,
-    considered: usize,
-    natural_scale: Vec<f64>,
-    negligible_cost: f64,
-    gauge: Option<ScaleGauge>,
-    buffers: Buffers,
-}
-
-/// Keeps the size of an arm whose readings know no length: one more equation along the direction of growth.
-struct ScaleGauge {
-    /// unit vector over the unknowns
-    direction: Vec<f64>,
-    start: Vec<f64>,
-    weight: f64,
-}
-
-impl<'a> Assembly<'a> {
-    /// With the free parameters given by index. The readings must have been weighed.
-    pub fn new(problem: &'a Problem, free: &[usize], monitor: &'a dyn Monitor) -> Assembly<'a> {
-        let units = problem.arm.parameter_units();
-        let reach = problem.reach_mm();
-        let mut of_parameter = vec![None; problem.arm.parameter_count()];
-        for (unknown, &parameter) in free.iter().enumerate() {
-            of_parameter[parameter] = Some(unknown);
-        }
-        let mut considered = 0;
-        let group_unknowns = |group: &Box<dyn Readings>| {
-            let first = free.len() + considered;
-            considered += group.considered().len();
-            Unknowns {
-                parameters: of_parameter.clone(),
-                considered: (first..free.len() + considered).map(Some).collect(),
-            }
-        };
-        let unknowns = problem.groups.iter().map(group_unknowns).collect();
-        let weight_squared: f64 = problem.groups.iter().map(|g| g.weight_squared_sum()).sum();
-        let rounding = 32.0 * f64::EPSILON * reach;
-        let start = problem.arm.parameters();
-        Assembly {
-            problem,
-            monitor,
-            natural_scale: free
-                .iter()
-                .map(|&j| if units[j] == Unit::Rad { reach } else { 1.0 })
-                .collect(),
-            gauge: scale_direction(problem, free).map(|direction| ScaleGauge {
-                direction,
-                start: free.iter().map(|&j| start[j]).collect(),
-                weight: weight_squared.sqrt(),
-            }),
-            free: free.to_vec(),
-            model: Model::new(&problem.arm),
-            parameters: start,
-            unknowns,
-            considered,
-            negligible_cost: weight_squared * rounding * rounding,
-            buffers: Buffers::default(),
-        }
-    }
-
-    /// The readings' own equations at `x`, the considered dimensions as further unknowns behind the free ones.
-    ///
-    /// # Errors
-    /// [`Error::Interrupted`].
-    pub fn considered_rows(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
-        self.stream(x, true, true, sink)
-    }
-
-    /// Number of considered dimensions.
-    pub fn considered(&self) -> usize {
-        self.considered
-    }
-
-    /// Unit direction over the unknowns in which the arm only grows, where the readings know no length.
-    pub fn scale_direction(&self) -> Option<&[f64]> {
-        self.gauge.as_ref().map(|g| g.direction.as_slice())
-    }
-
-    fn stream(&mut self, x: &[f64], jacobian: bool, considered: bool, sink: &mut dyn RowSink) -> Result<()> {
-        for (&j, &value) in self.free.iter().zip(x) {
-            self.parameters[j] = value;
-        }
-        self.model.set_parameters(&self.parameters);
-        // joints and tips, considered dimensions, residual, placement
-        let columns = self.parameters.len() + self.considered + 1 + 6;
-        let mut out = Writer::new(&mut self.buffers, columns, &self.model, sink, self.monitor);
-        let mut streamed = Ok(());
-        for (group, unknowns) in self.problem.groups.iter().zip(&mut self.unknowns) {
-            let kept = (!considered).then(|| std::mem::take(&mut unknowns.considered));
-            unknowns.considered.resize(group.considered().len(), None);
-            streamed = group.stream(&self.model, unknowns, jacobian, &mut out);
-            if let Some(kept) = kept {
-                unknowns.considered = kept;
-            }
-            if streamed.is_err() {
-                break;
-            }
-        }
-        let finished = out.finish(&mut self.buffers);
-        streamed.and(finished)
-    }
-}
-
-/// The direction in which all lengths grow, over the unknowns: where no reading knows a length and none is held.
-fn scale_direction(problem: &Problem, free: &[usize]) -> Option<Vec<f64>> {
-    if !problem.scale_free() || problem.groups.is_empty() {
-        return None;
-    }
-    let units = problem.arm.parameter_units();
-    let values = problem.arm.parameters();
-    let used = problem.probes_used();
-    let joints = problem.arm.joint_parameter_count();
-    let matters = |j: usize| j < joints || used[(j - joints) / 3];
-    // d_1 only lifts the base and so does not hold the size
-    let holds = |j: &usize| units[*j] == Unit::Mm && matters(*j) && *j != 3 && values[*j] != 0.0 && !free.contains(j);
-    if (0..values.len()).any(|j| holds(&j)) {
-        return None;
-    }
-    let grows = |&j: &usize| if units[j] == Unit::Mm && matters(j) && j != 3 { values[j] } else { 0.0 };
-    let lengths = nalgebra::DVector::from_iterator(free.len(), free.iter().map(grows));
-    let norm = lengths.norm();
-    (norm > 0.0).then(|| (lengths / norm).as_slice().to_vec())
-}
-
-impl LeastSquares for Assembly<'_> {
-    fn unknowns(&self) -> usize {
-        self.free.len()
-    }
-
-    fn natural_scale(&self) -> &[f64] {
-        &self.natural_scale
-    }
-
-    fn negligible_cost(&self) -> f64 {
-        self.negligible_cost
-    }
-
-    fn rows(&mut self, x: &[f64], jacobian: bool, sink: &mut dyn RowSink) -> Result<()> {
-        self.stream(x, jacobian, false, sink)?;
-        if let Some(gauge) = &self.gauge {
-            let moved = x.iter().zip(&gauge.start).zip(&gauge.direction);
-            let residual: f64 = moved.map(|((x, start), d)| (x - start) * d).sum();
-            let columns = gauge.direction.len() + 1;
-            let mut block = single_row(gauge.direction.iter().chain([&residual]).map(|v| v * gauge.weight), columns);
-            if !jacobian {
-                block.targets.clear();
-            }
-            sink.fold(&mut block);
-        }
-        Ok(())
-    }
-}
-
-/// A block of one equation, its last column the residual.
-fn single_row(values: impl Iterator<Item = f64>, columns: usize) -> crate::solver::RowBlock {
-    let mut block = crate::solver::RowBlock {
-        columns: crate::kinematics::batch::Columns::zeros(columns, 1),
-        rows: crate::kinematics::lanes::PAD,
-        targets: (0..columns - 1).map(|c| (c, c)).collect(),
-        residual: columns - 1,
-    };
-    for (column, value) in values.enumerate() {
-        block.columns.column_mut(column)[0] = value;
-    }
-    block
 }
 
 /// A tip's distance from the last axis, mm.

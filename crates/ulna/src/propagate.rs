@@ -1,8 +1,8 @@
 //! What uncertain parameters do to a measured point.
 
 use crate::arm::Arm;
-use crate::kinematics::batch::{Chain, for_each_derivative};
-use crate::kinematics::{jacobian, tip_mm};
+use crate::kinematics::batch::for_each_derivative;
+use crate::kinematics::{Chain, jacobian, tip_mm};
 use crate::numdiff;
 
 /// Poses whose derivatives are kept at once.
@@ -10,7 +10,14 @@ const TILE: usize = 512;
 
 /// `J C Jᵀ` of each pose: xx, xy, xz, yy, yz, zz in mm², row-major. `columns` names the parameters that the row-major
 /// covariance is of.
-pub fn tip_covariance(arm: &Arm, probe: usize, tip_mm: [f64; 3], q_rad: &[f64], columns: &[usize], covariance: &[f64]) -> Vec<f64> {
+pub fn tip_covariance(
+    arm: &Arm,
+    probe: usize,
+    tip_mm: [f64; 3],
+    q_rad: &[f64],
+    columns: &[usize],
+    covariance: &[f64],
+) -> Vec<f64> {
     let k = columns.len();
     let mut out = Vec::with_capacity(q_rad.len() / arm.encoders() * 6);
     let mut image = vec![0.0; k];
@@ -33,7 +40,14 @@ pub fn tip_covariance(arm: &Arm, probe: usize, tip_mm: [f64; 3], q_rad: &[f64], 
 }
 
 /// How far the tip moves at each pose, mm, for that of the row-major directions (over `columns`) that moves it most.
-pub fn direction_effect(arm: &Arm, probe: usize, tip_mm: [f64; 3], q_rad: &[f64], columns: &[usize], directions: &[f64]) -> Vec<f64> {
+pub fn direction_effect(
+    arm: &Arm,
+    probe: usize,
+    tip_mm: [f64; 3],
+    q_rad: &[f64],
+    columns: &[usize],
+    directions: &[f64],
+) -> Vec<f64> {
     let k = columns.len();
     let mut out = Vec::with_capacity(q_rad.len() / arm.encoders());
     tiles(arm, probe, tip_mm, q_rad, columns, |rows| {

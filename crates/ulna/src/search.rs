@@ -4,9 +4,10 @@
 //! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
 
 use crate::arm::Unit;
+use crate::assembly::{Assembly, Pin};
 use crate::error::{Error, Result};
 use crate::monitor::{Monitor, Stage};
-use crate::problem::{Assembly, Problem};
+use crate::problem::Problem;
 use crate::solver::LeastSquares;
 use crate::solver::lm::{Options, minimize};
 use rand::{RngExt, SeedableRng};
@@ -46,35 +47,30 @@ pub(crate) struct Plan {
 /// Readings used for a start, and iterations after which a start is given up.
 const READINGS: usize = 200;
 const ITERATIONS: usize = 60;
-/// Starts that must agree on the best cost before it is believed, where no cost is low enough by itself.
+/// Starts that must agree on the best cost before it is believed, where the cost is not low enough by itself; and where
+/// it is so high that a calibrated arm would not leave it.
 const AGREEING: usize = 4;
+const AGREEING_POOR: usize = 40;
 
 pub(crate) fn search(
     problem: &Problem,
     free: &[usize],
+    pins: &[Pin],
     given: &[f64],
     plan: Plan,
     monitor: &dyn Monitor,
 ) -> Result<Searched> {
-    let thin = problem.with_groups(problem.groups().iter().map(|g| share(problem, g.as_ref())).collect());
-    let mut assembly = Assembly::new(&thin, free, monitor);
-    let options = Options {
-        max_iterations: ITERATIONS,
-        ..Options::default()
-    };
+    let thin = problem.thinned(READINGS);
+    let mut assembly = Assembly::new(&thin, free, pins, monitor);
+    let options = Options { max_iterations: ITERATIONS, ..Options::default() };
     let quiet = Quiet(monitor);
     let units = problem.arm().parameter_units();
     let joints = problem.arm().joint_parameter_count();
-    let zero_offset = |j: usize| j < joints && j % 4 == 0 && units[j] == Unit::Rad;
+    let zero_offset = |j: usize| j < joints && j.is_multiple_of(4) && units[j] == Unit::Rad;
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
     let mut x = given.to_vec();
     let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
-    let mut best = Searched {
-        x,
-        cost: cost_given,
-        cost_given,
-        starts: 1,
-    };
+    let mut best = Searched { x, cost: cost_given, cost_given, starts: 1 };
     let mut agreeing = 1;
     for attempt in 0..plan.most_starts {
         if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
@@ -103,19 +99,21 @@ pub(crate) fn search(
         // the noise as stated, or rounding, explains it; or several starts found the same
         let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
         let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
-        if explained || best.cost <= assembly.negligible_cost() || agreeing >= AGREEING {
+        let enough = if poor(&thin, best.cost) { AGREEING_POOR } else { AGREEING };
+        if explained || best.cost <= assembly.negligible_cost() || agreeing >= enough {
             break;
         }
     }
     Ok(best)
 }
 
-/// A group's part of the readings of a start.
-fn share(problem: &Problem, group: &dyn crate::residuals::Readings) -> Box<dyn crate::residuals::Readings> {
-    let part = (READINGS * group.len()).div_ceil(problem.readings().max(1));
-    let mut thin = group.thinned(part.max(4));
-    thin.keep_sin_cos();
-    thin
+/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves.
+const POOR: f64 = 1e-3;
+
+/// Whether a cost is beyond what any calibrated arm leaves.
+pub(crate) fn poor(problem: &Problem, cost: f64) -> bool {
+    let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
+    (cost / weights).sqrt() > POOR * problem.reach_mm()
 }
 
 /// Lets a fit be interrupted without reporting each of its steps.

@@ -84,17 +84,12 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
             *value = nominal[j] + wrap(*value - nominal[j]);
         }
     }
-    let mut steps: Vec<String> = (0..joints)
-        .filter(|i| flips >> i & 1 == 1)
-        .map(|i| format!("flip of joint {}", i + 1))
-        .collect();
+    let mut steps: Vec<String> =
+        (0..joints).filter(|i| flips >> i & 1 == 1).map(|i| format!("flip of joint {}", i + 1)).collect();
     if mirror {
         steps.push("mirror".into());
     }
-    Folded {
-        parameters: folded,
-        steps,
-    }
+    Folded { parameters: folded, steps }
 }
 
 /// theta0 and d of the first joint only move the base.
@@ -172,11 +167,7 @@ mod tests {
     fn every_twin_folds_back() {
         let arm = samples::table2(10.0);
         let nominal = arm.parameters();
-        let all = Freedom {
-            free: &[true; 27],
-            base_free: true,
-            mirror_free: true,
-        };
+        let all = Freedom { free: &[true; 27], base_free: true, mirror_free: true };
         for flips in 0..64 {
             let mut p = nominal.clone();
             (0..6).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(&arm, i, &mut p));

@@ -8,10 +8,13 @@
 //! ```
 
 pub mod batch;
-pub(crate) mod lanes;
+mod chain;
+mod poses;
 
 use crate::arm::{Arm, Joint, JointModel};
+pub use chain::Chain;
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
+pub use poses::Poses;
 
 /// `T_i`: from the frame after joint i to the frame before it, at encoder angle `q_rad`.
 fn step(joint: &Joint, q_rad: f64) -> Isometry3<f64> {

@@ -6,8 +6,10 @@
 
 use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Writer};
 use crate::error::Result;
-use crate::kinematics::batch::{Chain, Columns, Poses, forward, gradient};
-use crate::kinematics::lanes::Lanes;
+use crate::kinematics::batch::{forward, gradient, gradient_between, scratch_len};
+use crate::kinematics::{Chain, Poses};
+use crate::simd::Columns;
+use crate::simd::Lanes;
 use crate::solver::BLOCK_ROWS;
 use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
@@ -66,15 +68,8 @@ impl Lengths {
                 rows,
             });
         }
-        let considered = Considered {
-            name: format!("artefact.{name}.length"),
-            u_mm,
-        };
-        Lengths {
-            runs,
-            considered: if u_mm > 0.0 { vec![considered] } else { vec![] },
-            rows: data.probe.len(),
-        }
+        let considered = Considered { name: format!("artefact.{name}.length"), u_mm };
+        Lengths { runs, considered: if u_mm > 0.0 { vec![considered] } else { vec![] }, rows: data.probe.len() }
     }
 }
 
@@ -125,7 +120,7 @@ impl Readings for Lengths {
     }
 
     fn weigh(&mut self, model: &Model, noise: Option<&Noise>) {
-        let mut scratch = [vec![0.0; model.chain.scratch_len()], vec![0.0; model.chain.scratch_len()]];
+        let mut scratch = [vec![0.0; scratch_len(&model.chain)], vec![0.0; scratch_len(&model.chain)]];
         for run in &mut self.runs {
             let mut weight = ones(run.rows.len());
             if let Some(noise) = noise {
@@ -191,20 +186,14 @@ impl Readings for Lengths {
                 weights[row] = run.weight.column(0)[k];
             }
         }
-        Unweighted {
-            components: 1,
-            residuals_mm,
-            weights,
-        }
+        Unweighted { components: 1, residuals_mm, weights }
     }
 
     fn sample_poses(&self, most: usize) -> Vec<(usize, Vec<f64>)> {
         let step = (2 * self.rows).div_ceil(most.max(1)).max(1);
         let run_poses = |run: &Run| {
             let poses = (0..run.rows.len()).step_by(step);
-            poses
-                .flat_map(|k| [(run.probe, run.from.pose(k)), (run.probe, run.to.pose(k))])
-                .collect::<Vec<_>>()
+            poses.flat_map(|k| [(run.probe, run.from.pose(k)), (run.probe, run.to.pose(k))]).collect::<Vec<_>>()
         };
         self.runs.iter().flat_map(run_poses).collect()
     }
@@ -237,14 +226,13 @@ impl Readings for Lengths {
         for run in &self.runs {
             let count = (keep * run.rows.len()).div_ceil(self.rows.max(1)).min(run.rows.len());
             let picked: Vec<usize> = (0..count).map(|i| i * run.rows.len() / count).collect();
-            let pick = |column: &[f64]| picked.iter().map(|&k| column[k]).collect::<Vec<_>>();
             runs.push(Run {
                 probe: run.probe,
                 rows: (0..picked.len()).collect(),
                 from: run.from.picked(&picked),
                 to: run.to.picked(&picked),
-                length_mm: Columns::from_rows(&pick(run.length_mm.column(0)), 1),
-                weight: Columns::from_rows(&pick(run.weight.column(0)), 1),
+                length_mm: run.length_mm.picked(&picked),
+                weight: run.weight.picked(&picked),
             });
         }
         let mut next = 0;
@@ -252,11 +240,7 @@ impl Readings for Lengths {
             run.rows = (next..next + run.rows.len()).collect();
             next += run.rows.len();
         }
-        Box::new(Lengths {
-            runs,
-            considered: self.considered.clone(),
-            rows: next,
-        })
+        Box::new(Lengths { runs, considered: self.considered.clone(), rows: next })
     }
 
     fn boxed(&self) -> Box<dyn Readings> {
@@ -321,27 +305,22 @@ impl WithSimd for LengthOp<'_, '_> {
         for v in 0..block.rows / S::F64_LANES {
             let k = self.start / S::F64_LANES + v;
             let (distance, u) = between(simd, self.chain, self.run, k, self.tip, scratch);
-            let weight = Lanes::load(simd, self.run.weight.column(0), k);
-            let length = Lanes::load(simd, self.run.length_mm.column(0), k);
-            ((distance - length) * weight).store(block.columns.column_mut(block.residual), v);
+            let weight = self.run.weight.load(simd, 0, k);
+            let length = self.run.length_mm.load(simd, 0, k);
+            block.columns.store(block.residual, v, (distance - length) * weight);
             if !self.jacobian {
                 continue;
             }
             let last_turn = self.chain.joint_parameter_count() + 3;
             let direction = u.map(|x| x * weight);
-            gradient(simd, self.chain, &scratch[0], direction, |column, value| {
+            let scratch = [scratch[0].as_slice(), scratch[1].as_slice()];
+            gradient_between(simd, self.chain, scratch, direction, |column, value| {
                 if column < last_turn {
-                    value.store(block.columns.column_mut(column), v);
-                }
-            });
-            gradient(simd, self.chain, &scratch[1], direction, |column, value| {
-                if column < last_turn {
-                    let column = block.columns.column_mut(column);
-                    (Lanes::load(simd, column, v) - value).store(column, v);
+                    block.columns.store(column, v, value);
                 }
             });
             if self.considered {
-                (-weight).store(block.columns.column_mut(last_turn), v);
+                block.columns.store(last_turn, v, -weight);
             }
         }
     }

@@ -5,13 +5,14 @@
 //! (variable projection, Golub and Pereyra 1973, with Kaufman's Jacobian 1975).
 
 pub mod length;
-mod placement;
 pub mod points;
 
 use crate::arm::Arm;
 use crate::error::{Error, Result};
-use crate::kinematics::batch::{Chain, Columns};
+use crate::kinematics::Chain;
+use crate::kinematics::batch::scratch_len;
 use crate::monitor::Monitor;
+use crate::simd::Columns;
 use crate::solver::{BLOCK_ROWS, RowBlock, RowSink};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt::Debug;
@@ -37,10 +38,7 @@ pub struct Model {
 impl Model {
     /// From an arm.
     pub fn new(arm: &Arm) -> Model {
-        Model {
-            chain: Chain::new(arm),
-            tips_mm: arm.probes().iter().map(|p| p.tip_mm).collect(),
-        }
+        Model { chain: Chain::new(arm), tips_mm: arm.probes().iter().map(|p| p.tip_mm).collect() }
     }
 
     /// Takes other parameters, in the arm's order.
@@ -177,7 +175,7 @@ impl<'a> Writer<'a> {
             buffers.columns = Columns::zeros(columns, BLOCK_ROWS);
             buffers.capacity = columns;
         }
-        let need = model.chain.scratch_len();
+        let need = scratch_len(&model.chain);
         for scratch in &mut buffers.scratch {
             scratch.resize(need, 0.0);
         }

@@ -1,10 +1,9 @@
 //! Levenberg (1944) and Marquardt (1963), on columns scaled to unit norm, with the damping of Nielsen (1999).
 
-use super::gram::Gram;
+use super::gram::{Gram, cholesky};
 use super::{LeastSquares, vanished};
 use crate::error::Result;
 use crate::monitor::{Monitor, Stage};
-use pulp::{Arch, Simd, WithSimd};
 
 /// How a minimization ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,10 +40,7 @@ impl Termination {
 
     /// Whether the minimum was reached.
     pub fn converged(self) -> bool {
-        !matches!(
-            self,
-            Termination::NoProgress | Termination::MaxIterations | Termination::PoorMinimum
-        )
+        !matches!(self, Termination::NoProgress | Termination::MaxIterations | Termination::PoorMinimum)
     }
 }
 
@@ -74,10 +70,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options {
-            max_iterations: 200,
-            cost_tolerance: 1e-12,
-        }
+        Options { max_iterations: 200, cost_tolerance: 1e-12 }
     }
 }
 
@@ -100,10 +93,24 @@ pub fn minimize(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Report> {
-    let n = problem.unknowns();
-    let mut here = Gram::new(n);
-    let mut there = Gram::new(n);
+    let mut here = Gram::new(problem.unknowns());
     problem.rows(x, true, &mut here)?;
+    minimize_from(problem, x, here, options, monitor)
+}
+
+/// [`minimize`] where the rows at `x` have been folded already.
+///
+/// # Errors
+/// As there.
+pub fn minimize_from(
+    problem: &mut dyn LeastSquares,
+    x: &mut [f64],
+    mut here: Gram,
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Report> {
+    let n = problem.unknowns();
+    let mut there = Gram::new(n);
     let mut report = Report {
         termination: Termination::MaxIterations,
         iterations: 0,
@@ -189,12 +196,7 @@ struct Step {
 
 impl Step {
     fn new(n: usize) -> Step {
-        Step {
-            delta: vec![0.0; n],
-            active: Vec::with_capacity(n),
-            factor: vec![0.0; n * n],
-            scaled: vec![0.0; n],
-        }
+        Step { delta: vec![0.0; n], active: Vec::with_capacity(n), factor: vec![0.0; n * n], scaled: vec![0.0; n] }
     }
 
     /// Solves `(D⁻¹ JᵀJ D⁻¹ + λ) (D δ) = -D⁻¹ Jᵀr` by Cholesky; returns the predicted reduction of the cost.
@@ -212,7 +214,7 @@ impl Step {
             a[i * n + i] += damping;
             self.scaled[i] = -gram.gradient(row) * inverse;
         }
-        Arch::new().dispatch(Cholesky(&mut a[..n * n], n));
+        cholesky(a, n);
         for i in 0..n {
             let row = &a[i * n..(i + 1) * n];
             let value = self.scaled[i] / row[i];
@@ -234,32 +236,5 @@ impl Step {
             predicted += damping * self.scaled[i].powi(2) - self.delta[j] * gram.gradient(j);
         }
         predicted
-    }
-}
-
-/// Upper Cholesky factor `A = UᵀU` in place, row-major, so that every inner loop runs along rows.
-///
-/// Some 25 unknowns are factored here every few microseconds; a general library's call costs more than the work.
-struct Cholesky<'a>(&'a mut [f64], usize);
-
-impl WithSimd for Cholesky<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Cholesky(a, n) = self;
-        for k in 0..n {
-            let (pivots, below) = a.split_at_mut((k + 1) * n);
-            let pivot_row = &mut pivots[k * n + k..];
-            // damping keeps the pivot positive; see DAMPING_LEAST
-            let inverse = 1.0 / pivot_row[0].max(f64::MIN_POSITIVE).sqrt();
-            pivot_row.iter_mut().for_each(|u| *u *= inverse);
-            for (i, row) in below.chunks_exact_mut(n).enumerate() {
-                let factor = pivot_row[i + 1];
-                let target = &mut row[k + 1 + i..];
-                for (value, u) in target.iter_mut().zip(&pivot_row[i + 1..]) {
-                    *value -= factor * u;
-                }
-            }
-        }
     }
 }

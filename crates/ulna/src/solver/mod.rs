@@ -10,7 +10,7 @@ pub mod reflect;
 pub mod triangle;
 
 use crate::error::Result;
-use crate::kinematics::batch::Columns;
+use crate::simd::Columns;
 
 /// Rows in a block.
 pub const BLOCK_ROWS: usize = 256;

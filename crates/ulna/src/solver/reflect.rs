@@ -1,8 +1,8 @@
 //! Householder reflections that fold a block of rows into a triangle above it: the one orthogonal step that
 //! eliminates placements, makes the triangular factor and so decides rank.
 
-use crate::kinematics::batch::Columns;
-use crate::kinematics::lanes::{Lanes, PAD};
+use crate::simd::Columns;
+use crate::simd::{Lanes, PAD};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
@@ -12,14 +12,8 @@ use std::ops::Range;
 /// (their entries are stale) and the others hold what is orthogonal to them. Start and length of `rows` are
 /// multiples of the padding, surplus rows zero.
 pub fn fold_into(top: &mut [f64], pivots: usize, columns: &mut Columns, order: &[usize], rows: Range<usize>) {
-    debug_assert!(rows.start % PAD == 0 && rows.len() % PAD == 0);
-    Arch::new().dispatch(ReflectOp {
-        top,
-        pivots,
-        columns,
-        order,
-        rows,
-    });
+    debug_assert!(rows.start.is_multiple_of(PAD) && rows.len().is_multiple_of(PAD));
+    Arch::new().dispatch(ReflectOp { top, pivots, columns, order, rows });
 }
 
 /// Columns reflected together, so that the pivot's column is read once for all of them.
@@ -37,13 +31,7 @@ impl WithSimd for ReflectOp<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let ReflectOp {
-            top,
-            pivots,
-            columns,
-            order,
-            rows,
-        } = self;
+        let ReflectOp { top, pivots, columns, order, rows } = self;
         let width = order.len();
         let vectors = rows.len() / S::F64_LANES;
         let mut pivot_column = [0.0; super::BLOCK_ROWS];
@@ -64,26 +52,58 @@ impl WithSimd for ReflectOp<'_> {
             let head = alpha - beta;
             let tau = 2.0 / (head * head + below);
             top[k * width + k] = beta;
-            for j in (k + 1..width).step_by(TOGETHER) {
-                let together = TOGETHER.min(width - j);
-                let mut dots = [Lanes::splat(simd, 0.0); TOGETHER];
-                for (t, dot) in dots.iter_mut().enumerate().take(together) {
-                    let column = &columns.column(order[j + t])[rows.clone()];
-                    for i in 0..vectors {
-                        *dot = Lanes::load(simd, pivot, i).mul_add(Lanes::load(simd, column, i), *dot);
-                    }
+            let mut j = k + 1;
+            while j < width {
+                let together = if width - j >= TOGETHER { TOGETHER } else { 1 };
+                let range: [usize; TOGETHER] = std::array::from_fn(|t| order[(j + t).min(width - 1)]);
+                let above = &mut top[k * width + j..][..together];
+                let head = Head { simd, pivot, first: rows.start / S::F64_LANES, head, tau };
+                if together == TOGETHER {
+                    head.reflect::<TOGETHER>(columns, range, above);
+                } else {
+                    head.reflect::<1>(columns, [range[0]], above);
                 }
-                for (t, dot) in dots.iter().enumerate().take(together) {
-                    let above = &mut top[k * width + j + t];
-                    let factor = (*above * head + dot.sum()) * tau;
-                    *above -= factor * head;
-                    let factor = Lanes::splat(simd, factor);
-                    let column = &mut columns.column_mut(order[j + t])[rows.clone()];
-                    for i in 0..vectors {
-                        let reflected = Lanes::load(simd, pivot, i).neg_mul_add(factor, Lanes::load(simd, column, i));
-                        reflected.store(column, i);
-                    }
-                }
+                j += together;
+            }
+        }
+    }
+}
+
+/// One reflection, ready to be applied.
+#[derive(Clone, Copy)]
+struct Head<'a, S> {
+    simd: S,
+    pivot: &'a [f64],
+    /// first vector of the rows
+    first: usize,
+    head: f64,
+    tau: f64,
+}
+
+impl<S: Simd> Head<'_, S> {
+    /// Reflects `N` columns at once, with a chain of sums for each.
+    #[inline(always)]
+    fn reflect<const N: usize>(self, columns: &mut Columns, which: [usize; N], above: &mut [f64]) {
+        let Head { simd, pivot, first, head, tau } = self;
+        let vectors = pivot.len() / S::F64_LANES;
+        let mut dots = [Lanes::splat(simd, 0.0); N];
+        for i in 0..vectors {
+            let p = Lanes::load(simd, pivot, i);
+            for t in 0..N {
+                dots[t] = p.mul_add(columns.load(simd, which[t], first + i), dots[t]);
+            }
+        }
+        let mut factors = [Lanes::splat(simd, 0.0); N];
+        for t in 0..N {
+            let factor = (above[t] * head + dots[t].sum()) * tau;
+            above[t] -= factor * head;
+            factors[t] = Lanes::splat(simd, factor);
+        }
+        for i in 0..vectors {
+            let p = Lanes::load(simd, pivot, i);
+            for t in 0..N {
+                let value = p.neg_mul_add(factors[t], columns.load(simd, which[t], first + i));
+                columns.store(which[t], first + i, value);
             }
         }
     }

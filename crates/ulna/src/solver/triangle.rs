@@ -2,7 +2,7 @@
 
 use super::reflect::fold_into;
 use super::{BLOCK_ROWS, RowBlock, RowSink};
-use crate::kinematics::batch::Columns;
+use crate::simd::Columns;
 use faer::Mat;
 
 /// `R` of `[J r] = Q R`, built while the rows stream by; never `JᵀJ`.

@@ -86,7 +86,7 @@ impl<S: Simd> Lanes<S> {
             2.0876146024689747e-09,
             -1.1382614868556325e-11,
         ];
-        const HALF_PI: [f64; 3] = [1.5707963267948966, 6.123233995736766e-17, -1.497384905065873e-33];
+        const HALF_PI: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.497384905065873e-33];
         /// Adding it rounds to an integer, which then stands in the low bits.
         const ROUND: f64 = 6755399441055744.0;
 
@@ -172,9 +172,7 @@ mod tests {
         let x: Vec<f64> = (0..n).map(|i| range * (2.0 * i as f64 / (n - 1) as f64 - 1.0)).collect();
         let (mut s, mut c) = (vec![0.0; n], vec![0.0; n]);
         run(SinCos(&x, &mut s, &mut c));
-        (0..n)
-            .map(|i| (s[i] - x[i].sin()).abs().max((c[i] - x[i].cos()).abs()))
-            .fold(0.0, f64::max)
+        (0..n).map(|i| (s[i] - x[i].sin()).abs().max((c[i] - x[i].cos()).abs())).fold(0.0, f64::max)
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Where an artefact stands: the pose that fits the touches of its features best.
 
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix3xX, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Matrix3, Matrix3xX, Point3, Rotation3, Translation3, UnitQuaternion, Vector3,
+};
 use std::ops::Range;
 
 /// One standing of an artefact: which readings, and which motions of it the touched features can show.
@@ -31,12 +33,7 @@ impl Placement {
         let span = eigen.eigenvalues.iter().filter(|&&value| seen(value)).count();
         let turns = |k: &usize| seen(eigen.eigenvalues.sum() - eigen.eigenvalues[*k]);
         let axes = (0..3).filter(turns).map(|k| eigen.eigenvectors.column(k).into()).collect();
-        Placement {
-            rows,
-            anchor,
-            axes,
-            span,
-        }
+        Placement { rows, anchor, axes, span }
     }
 
     /// Number of unknowns: 3, 5 or 6.
@@ -49,9 +46,8 @@ impl Placement {
     /// Where all weights are alike in all directions the closed form is exact (Kabsch 1976); else Gauss-Newton goes on from it.
     pub fn pose(&self, touches: &[Touch], isotropic: bool) -> Isometry3<f64> {
         let weight: f64 = touches.iter().map(Touch::weight).sum();
-        let mean = |of: fn(&Touch) -> Vector3<f64>| {
-            touches.iter().map(|t| of(t) * t.weight()).sum::<Vector3<f64>>() / weight
-        };
+        let mean =
+            |of: fn(&Touch) -> Vector3<f64>| touches.iter().map(|t| of(t) * t.weight()).sum::<Vector3<f64>>() / weight;
         let (p_mean, f_mean) = (mean(|t| t.p_mm), mean(|t| t.feature_mm));
         let mut rotation = Rotation3::identity();
         if !self.axes.is_empty() {
@@ -69,7 +65,7 @@ impl Placement {
         let translation = Translation3::from(p_mean - rotation * f_mean);
         let mut pose = Isometry3::from_parts(translation, UnitQuaternion::from_rotation_matrix(&rotation));
         if !isotropic {
-            for _ in 0..20 {
+            for _ in 0..100 {
                 let moved = self.improve(&mut pose, touches);
                 if moved < 1e-13 {
                     break;
@@ -79,7 +75,7 @@ impl Placement {
         pose
     }
 
-    /// One Gauss-Newton step; returns its size relative to the distances involved.
+    /// One Gauss-Newton step, shortened until it lowers the cost; returns its size relative to the distances involved.
     fn improve(&self, pose: &mut Isometry3<f64>, touches: &[Touch]) -> f64 {
         let n = self.unknowns();
         let mut normal = DMatrix::zeros(n, n);
@@ -93,14 +89,29 @@ impl Placement {
         let Some(cholesky) = normal.cholesky() else {
             return 0.0;
         };
-        let step = -cholesky.solve(&right);
-        let shift = Vector3::new(step[0], step[1], step[2]);
+        let mut step = -cholesky.solve(&right);
+        let cost = |pose: &Isometry3<f64>| -> f64 {
+            touches.iter().map(|t| (t.whiten * t.residual(pose)).norm_squared()).sum()
+        };
+        let before = cost(pose);
+        for _ in 0..10 {
+            let moved = self.moved(pose, &step);
+            if cost(&moved) <= before {
+                let shift = step.fixed_rows::<3>(0).norm() / (1.0 + moved.translation.vector.norm());
+                *pose = moved;
+                return shift + step.rows(3, n - 3).norm();
+            }
+            step *= 0.5;
+        }
+        0.0
+    }
+
+    /// The pose after a step of the unknowns: the anchor shifted, the artefact turned about it.
+    fn moved(&self, pose: &Isometry3<f64>, step: &DVector<f64>) -> Isometry3<f64> {
+        let anchor = (pose * Point3::from(self.anchor)).coords + step.fixed_rows::<3>(0);
         let turn: Vector3<f64> = self.axes.iter().zip(step.iter().skip(3)).map(|(axis, &s)| axis * s).sum();
-        let anchor_old = *pose * Point3::from(self.anchor);
         let rotation = pose.rotation * UnitQuaternion::from_scaled_axis(turn);
-        let translation = anchor_old.coords + shift - rotation * self.anchor;
-        *pose = Isometry3::from_parts(translation.into(), rotation);
-        shift.norm() / (1.0 + anchor_old.coords.norm()) + turn.norm()
+        Isometry3::from_parts((anchor - rotation * self.anchor).into(), rotation)
     }
 
     /// Derivatives of the whitened residual with respect to the placement's unknowns.

@@ -1,0 +1,126 @@
+//! What every kind of readings owes the solver, whatever it observes.
+
+mod common;
+
+use common::{KINDS, any_arm, noises, rng};
+use ulna::assembly::{Assembly, pins};
+use ulna::monitor::Unwatched;
+use ulna::numdiff::worst_difference;
+use ulna::problem::Problem;
+use ulna::solver::LeastSquares;
+use ulna::solver::gram::{Cost, Gram};
+use ulna::solver::triangle::Triangle;
+
+/// Calls `check` for every kind under every noise, at an arm with residuals of tens of millimetres.
+fn for_all(check: impl Fn(&str, &Problem, &[usize])) {
+    for (kind, add) in KINDS {
+        for (noise_label, noise) in noises(6) {
+            let mut rng = rng(17);
+            let arm = any_arm(&mut rng, 6);
+            let mut problem = Problem::new(arm, noise).unwrap();
+            add(&mut problem, &mut rng);
+            let start = problem.arm().parameters();
+            problem.weigh(&start);
+            let free: Vec<usize> = (0..start.len()).collect();
+            check(&format!("{kind}, {noise_label}"), &problem, &free);
+        }
+    }
+}
+
+fn cost(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
+    let mut cost = Cost::default();
+    Assembly::new(problem, free, &[], &Unwatched).rows(x, false, &mut cost).unwrap();
+    cost.0
+}
+
+#[test]
+fn gradient_is_the_derivative_of_the_cost() {
+    for_all(|label, problem, free| {
+        let x = problem.arm().parameters();
+        let mut gram = Gram::new(x.len());
+        let mut assembly = Assembly::new(problem, free, &[], &Unwatched);
+        assembly.rows(&x, true, &mut gram).unwrap();
+        assert!((gram.cost() - cost(problem, free, &x)).abs() < 1e-12 * gram.cost(), "{label}: cost");
+
+        // the base's own parameters have no column where nothing fixes the base
+        let base = problem.base_parameters();
+        let moving: Vec<usize> = (0..x.len()).filter(|j| !base.contains(j)).collect();
+        let at = |values: &[f64]| {
+            let mut moved = x.clone();
+            moving.iter().zip(values).for_each(|(&j, &v)| moved[j] = v);
+            vec![cost(problem, free, &moved)]
+        };
+        let analytic: Vec<f64> = moving.iter().map(|&j| 2.0 * gram.gradient(j)).collect();
+        let values: Vec<f64> = moving.iter().map(|&j| x[j]).collect();
+        let natural = assembly.natural_scale();
+        let step: Vec<f64> = moving.iter().map(|&j| 1.0 / natural[j]).collect();
+        let scaled: Vec<f64> = analytic.iter().zip(&step).map(|(g, s)| (g * s).abs()).collect();
+        let largest = scaled.iter().copied().fold(0.0, f64::max);
+        // compare in units of the step, so that angles and lengths count alike
+        let in_steps = |v: &[f64]| at(&v.iter().zip(&step).map(|(v, s)| v * s).collect::<Vec<_>>());
+        let unit: Vec<f64> = values.iter().zip(&step).map(|(v, s)| v / s).collect();
+        let analytic: Vec<f64> = analytic.iter().zip(&step).map(|(g, s)| g * s).collect();
+        let worst = worst_difference(in_steps, &unit, &vec![1.0; unit.len()], &analytic);
+        assert!(worst < 2e-6 * largest, "{label}: {worst:e} of {largest:e}");
+    });
+}
+
+#[test]
+fn triangle_and_normal_equations_agree() {
+    for_all(|label, problem, free| {
+        let x = problem.arm().parameters();
+        let mut assembly = Assembly::new(problem, free, &[], &Unwatched);
+        let (mut gram, mut triangle) = (Gram::new(x.len()), Triangle::new(x.len()));
+        assembly.rows(&x, true, &mut gram).unwrap();
+        assembly.rows(&x, true, &mut triangle).unwrap();
+        for i in 0..x.len() {
+            for j in 0..=i {
+                let product: f64 = (0..=j).map(|k| triangle.at(k, i) * triangle.at(k, j)).sum();
+                let size = (gram.at(i, i) * gram.at(j, j)).sqrt();
+                assert!((product - gram.at(i, j)).abs() <= 1e-13 * size, "{label}: ({i}, {j})");
+            }
+        }
+    });
+}
+
+#[test]
+fn turning_the_base_changes_no_cost_of_what_stands_freely() {
+    for_all(|label, problem, free| {
+        if !problem.base_free() || problem.noise().is_some_and(|n| !n.encoder_rad.is_empty()) {
+            // weights taken in base directions stay behind when the base turns
+            return;
+        }
+        let x = problem.arm().parameters();
+        let mut turned = x.clone();
+        turned[0] += 0.7;
+        turned[3] += 55.0;
+        let (before, after) = (cost(problem, free, &x), cost(problem, free, &turned));
+        assert!((before - after).abs() < 1e-10 * before, "{label}: {before} {after}");
+    });
+}
+
+#[test]
+fn a_part_of_the_readings_has_the_whole_ones_rank() {
+    for_all(|label, problem, free| {
+        for group in problem.groups() {
+            let thin = group.thinned(group.len() / 2 + 4);
+            assert!(thin.len() <= group.len(), "{label}");
+            assert_eq!(thin.placement_unknowns(), group.placement_unknowns(), "{label}");
+        }
+        let (pinned, _) = pins(problem, free, &problem.arm().parameters(), &Unwatched).unwrap();
+        assert_eq!(pinned.iter().filter(|p| p.is_scale).count(), usize::from(problem.scale_free()), "{label}");
+    });
+}
+
+#[test]
+fn what_is_redrawn_without_noise_is_met_exactly() {
+    for_all(|label, problem, free| {
+        let model = ulna::residuals::Model::new(problem.arm());
+        let silent = ulna::residuals::Noise::default();
+        for group in problem.groups() {
+            let exact = group.redrawn(&model, &silent, &mut rng(3)).unweighted(&model);
+            let worst = exact.residuals_mm.iter().fold(0.0_f64, |w, r| w.max(r.abs()));
+            assert!(worst < 1e-9, "{label}: {worst:e}, {} free", free.len());
+        }
+    });
+}
