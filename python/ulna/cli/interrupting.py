@@ -13,11 +13,11 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import NoReturn
 
 INTERRUPTED = 130
-_GRACE_S = 0.1
+_GRACE_S = 0.06
 
 
 @contextmanager
@@ -50,15 +50,24 @@ def _end_at_once() -> None:
     output = sys.modules.get("ulna.files.output")
     if output is not None:
         output.MOVING.acquire()  # a result on its way to its place arrives; none leaves after this
-        for staged in list(output.UNDER_WAY):
-            shutil.rmtree(staged, ignore_errors=True) if staged.is_dir() else staged.unlink(missing_ok=True)
     say_interrupted()
     leave_interrupted()
 
 
 def leave_interrupted() -> NoReturn:
-    """End with exit code 130. Python itself would now and then end by the signal, code -2: it does so where the
-    interrupt came while a string was being executed, as dataclasses do, even if somebody caught it (CPython 3.11)."""
+    """Take away what is half written and end with exit code 130.
+
+    Left to itself Python would now and then end by the signal, code -2: it does so where the interrupt came while a
+    string was being executed, as dataclasses do, even if somebody caught it (CPython 3.11). And an interrupt that
+    comes just as a `with` is entered leaves the clean-up to the garbage collector.
+    """
+    output = sys.modules.get("ulna.files.output")
+    for staged in list(output.UNDER_WAY) if output is not None else ():
+        if staged.is_dir():
+            shutil.rmtree(staged, ignore_errors=True)
+        else:
+            with suppress(OSError):
+                staged.unlink()
     sys.stderr.flush()
     os._exit(INTERRUPTED)
 
