@@ -5,17 +5,17 @@ above) does that. All functions release the GIL. `UlnaError` carries a message m
 """
 
 from collections.abc import Callable, Sequence
-from typing import TypedDict
+from typing import TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
-type F64 = NDArray[np.float64]
-type I64 = NDArray[np.int64]
-type Bool = NDArray[np.bool_]
+F64: TypeAlias = NDArray[np.float64]
+I64: TypeAlias = NDArray[np.int64]
+Bool: TypeAlias = NDArray[np.bool_]
 
 #: called from the core about ten times a second with (stage, done, total); stage is "fit", "search", "monte carlo", …
-type Progress = Callable[[str, int, int], None]
+Progress: TypeAlias = Callable[[str, int, int], None]
 
 __version__: str
 
@@ -66,12 +66,12 @@ class Arm:
     def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64) -> F64:
         """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
     def direction_effect(self, q_rad: F64, probe: int, columns: I64, directions: F64) -> F64:
-        """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters here."""
+        """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters."""
     def pose_for_points(
         self, points_mm: F64, limits_rad: F64, seed: int, probe: int = 0, tries: int = 40
     ) -> tuple[F64, Bool]:
-        """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a random
-        elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
+        """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a
+        random elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
     def check_jacobian(self, q_rad: F64, probe: int = 0) -> float:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
@@ -101,7 +101,7 @@ class Identifiability:
     def names(self) -> list[str]: ...
     @property
     def singular_values(self) -> list[float]:
-        """Of the Jacobian with columns scaled to unit norm, placements eliminated; descending; zeros for vanished columns."""
+        """Of the Jacobian with unit columns, placements eliminated; descending; zeros for vanished columns."""
     @property
     def condition(self) -> float:
         """Smallest kept singular value over the largest."""
@@ -118,7 +118,8 @@ class Problem:
     """Readings of features of placed artefacts, to be explained by one arm."""
 
     def __init__(self, arm: Arm, encoder_u_rad: F64 | None = None, seat_u_mm: float | None = None) -> None:
-        """Standard deviations of the noise: (n,) per encoder, and of a touch per coordinate. Both None: every reading weighs one."""
+        """Standard deviations of the noise: (n,) per encoder, and of a touch per coordinate. Both None: every reading
+        weighs one."""
     def add_lengths(
         self, artefact: str, q_rad: F64, p_rad: F64, probe: I64, length_mm: F64, length_u_mm: float = 0.0
     ) -> int:
@@ -192,12 +193,14 @@ class Fitted:
     @property
     def covariance(self) -> F64:
         """(k, k) over `covariance_columns`, rad and mm; with stated noise as stated, else scaled by the residuals;
-        lost directions held at their values. All of it NaN where there are no degrees of freedom to estimate it from."""
+        lost directions held at their values. All of it NaN where no degrees of freedom are left to
+        estimate it from."""
     @property
     def covariance_columns(self) -> I64:
         """Indices of the free parameters."""
     def residuals(self, group: int) -> F64:
-        """(N, 3) mm in the base frame: tip minus where the feature stands; or (N, 1) for a length group: distance minus length."""
+        """(N, 3) mm in the base frame: tip minus where the feature stands; for a length group (N, 1): distance minus
+        length."""
     def residuals_start(self, group: int) -> F64: ...
     def weights(self, group: int) -> F64:
         """(N,) root of the weight of each reading, 1/mm (1 without stated noise), isotropic equivalent."""
@@ -211,7 +214,6 @@ def fit(
     search_starts: int = 400,
     known_length_mm: float = 1.0,
     known_angle_rad: float = 0.01,
-    threads: int = 1,
     progress: Progress | None = None,
 ) -> Fitted:
     """Calibrate. Raises UlnaError for fewer observations than unknowns; KeyboardInterrupt when interrupted.
@@ -233,4 +235,5 @@ def recalibrate(
     uncertainties: bool = True,
 ) -> tuple[F64, F64, Bool]:
     """Calibrations repeated on new noise: readings are taken as exact for `truth`, the problem's stated noise is drawn
-    anew for each run. Returns parameters (runs, P), standard uncertainties (runs, P; NaN where held or not determined), converged (runs,)."""
+    anew for each run (which starts from the problem's arm). Returns parameters (runs, P), standard uncertainties
+    (runs, P; NaN where held, not determined, or not asked for), converged (runs,)."""

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.cores import available_cores
 from ulna.errors import UlnaInputError, nearest
 from ulna.figures import figures
 from ulna.identify import Identification
@@ -27,11 +26,10 @@ if TYPE_CHECKING:
 Progress = Callable[[str, int, int], None]
 
 
-def calibrate(study: Study, progress: Progress | None = None, *, threads: int = 0, **overrides: Any) -> Result:
+def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) -> Result:
     """Fit the study's arm to its readings.
 
     `overrides` replace fields of `study.fit` (``hold=["joint.6.*"]``, ``start="search"``, ``seed=1`` …).
-    `threads` 0: one, or all cores where a search or many readings make that worth while.
     `progress` is called about ten times a second with (stage, done, total).
 
     The result says in `fit.converged` whether the fit ended well: that is no error. Raises UlnaInputError for what
@@ -40,7 +38,7 @@ def calibrate(study: Study, progress: Progress | None = None, *, threads: int = 
     study = with_options(study, **overrides)
     hold = study.hold_mask()
     began = time.perf_counter()
-    fitted = run_fit(study, hold, progress, threads)
+    fitted = run_fit(study, hold, progress)
     seconds = time.perf_counter() - began
     arm = study.arm.with_parameters(fitted.parameters)
     identification = Identification.from_core(fitted.identifiability)
@@ -85,14 +83,11 @@ def with_options(study: Study, **overrides: Any) -> Study:
     return study
 
 
-def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = None, threads: int = 0) -> _core.Fitted:
+def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = None) -> _core.Fitted:
     """The core's fit with the study's options; its complaints as UlnaInputError, naming the study."""
     from ulna import _core
 
     options = study.fit
-    rows = sum(len(group) for group in study.readings)
-    if threads <= 0:
-        threads = available_cores() if options.start == "search" or rows > 20_000 else 1
     problem = study.problem()
     try:
         return _core.fit(
@@ -103,7 +98,6 @@ def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = N
             seed=options.seed,
             known_length_mm=options.known_length_mm,
             known_angle_rad=options.known_angle_rad,
-            threads=threads,
             progress=progress,
         )
     except _core.UlnaError as error:

@@ -61,16 +61,14 @@ class Evaluation:
             self.residuals.write_csv(staging / "residuals.csv")
 
 
-def evaluate(
-    arm: Arm, study: Study, progress: Callable[[str, int, int], None] | None = None, *, threads: int = 0
-) -> Evaluation:
+def evaluate(arm: Arm, study: Study, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:
     """Apply `arm` to the study's readings; the study's own arm only gives the probes their names.
 
     Raises UlnaInputError where the arm has another number of joints or lacks a probe that the readings use.
     """
     fitting = study_of_arm(study, arm)
     fitting = dataclasses.replace(fitting, fit=dataclasses.replace(fitting.fit, start="given"))
-    fitted = run_fit(fitting, np.ones(len(arm.parameter_names), dtype=bool), progress, threads)
+    fitted = run_fit(fitting, np.ones(len(arm.parameter_names), dtype=bool), progress)
     artefacts, overall = figures(arm, fitting)
     return Evaluation(
         arm=arm,

@@ -256,7 +256,7 @@ fn watched<T: Send>(
 /// Calibrates.
 #[pyfunction]
 #[pyo3(signature = (problem, hold, start="given", max_iterations=200, seed=0, search_starts=400,
-                    known_length_mm=1.0, known_angle_rad=0.01, threads=1, progress=None))]
+                    known_length_mm=1.0, known_angle_rad=0.01, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit(
     py: Python<'_>,
@@ -268,10 +268,8 @@ pub fn fit(
     search_starts: usize,
     known_length_mm: f64,
     known_angle_rad: f64,
-    threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Fitted> {
-    let _ = threads;
     let free = free(&problem, &hold)?;
     let options = Options {
         start: match start {

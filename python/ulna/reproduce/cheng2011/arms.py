@@ -100,12 +100,12 @@ def touch(arm: Arm, points_mm: F64, seed: int, rng: np.random.Generator) -> F64:
 
 def places_of_a_bar(arm: Arm, count: int, seed: int, rng: np.random.Generator) -> F64:
     """(count, 2, 3) ends of a bar in random places and directions, both within the arm's reach and travel."""
-    tries = 4 * count
+    tries = 4 * count + 20
     limits = travel_rad(arm)
     first = arm.tip(rng.uniform(limits[:, 0], limits[:, 1], (tries, arm.n)))
     direction = rng.standard_normal((tries, 3))
     second = first + BAR_MM * direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    _, reached = arm.core.pose_for_points(second, limits, seed, tries=TRIES // 4)
+    _, reached = arm.core.pose_for_points(second, limits, seed, tries=TRIES // 40)
     if reached.sum() < count:
         raise ValueError(f"only {int(reached.sum())} of {count} places of the bar are within the virtual arm's reach")
     return np.stack([first, second], axis=1)[reached][:count]
