@@ -81,9 +81,9 @@ def test_a_straight_start_does_not_stay_straight(kind, r_mm):
 
 
 def test_axes_drawn_parallel_need_not_be():
-    """The same for axes: nominally parallel DH joints, built with a tilt of a milliradian each."""
+    """The same for axes: nominally parallel DH joints, built with a tilt of ten milliradians and other offsets."""
     drawn = [[0.0, 1.57, 30.0, 200.0], [0.1, 0.0, 400.0, 0.0], [0.2, 0.0, 380.0, 0.0], [0.0, 1.57, 0.0, 120.0]]
-    built = np.array(drawn) + [[0.0, 1e-3, 0.5, 0.0]] * 4
+    built = np.array(drawn) + [[0.0, 1e-2, 0.5, d_mm] for d_mm in (0.0, 1.0, -1.5, 2.0)]
     start, truth = chain(np.array(drawn), [40.0, 0.0, 150.0]), chain(built, [41.0, 1.0, 150.0])
     groups = [virtual.random_lengths(truth, np.random.default_rng(2), 101)]
     found = _core.fit(core_problem(start, groups), nothing_held(start))

@@ -158,9 +158,3 @@ def wrong_start(arm: Chain, rng: np.random.Generator, zero_rad: float, length_mm
         last=arm.last + rng.uniform(-length_mm, length_mm, arm.last.shape) * ~np.array(arm.hayati),
         tips_mm=arm.tips_mm + rng.uniform(-length_mm, length_mm, arm.tips_mm.shape),
     )
-
-
-def nudged(arm: Chain, q_rad: Array, shift_mm: Array, probe: int = 0) -> Array:
-    """Poses (N, n) moved so that the tip moves by (N, 3) mm: one step, enough for micrometres."""
-    j = arm.encoder_jacobian(q_rad, probe)
-    return q_rad + np.einsum("nij,nj->ni", np.linalg.pinv(j), shift_mm)

@@ -70,7 +70,8 @@ def _convergence(found: Findings) -> Table:
     table = _plain(
         f"Zero offsets wrong, lengths wrong by up to {WRONG_BY_MM:g} mm: starts that find the arm",
         f"{found.convergence[0].starts} random starts each. one start: Levenberg–Marquardt once, as in the paper; "
-        "default: a poor minimum is noticed and searched on from; search: from the beginning.",
+        "default: a poor minimum is noticed and searched on from; search: from the beginning. –: a limit of the paper "
+        "that this program does not have.",
     )
     for head in ("wrong by up to, rad", "the paper"):
         table.add_column(head, no_wrap=True)
