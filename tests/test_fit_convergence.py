@@ -137,6 +137,20 @@ def test_a_mirror_image_is_no_twin_where_coordinates_are_given():
     assert off.max() < 1e-6
 
 
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_search_with_seats_only_does_not_collapse(seed):
+    """An arm whose tip no joint moves explains every seat exactly, and is no arm: it must not win the search."""
+    truth = table_2()
+    rng = np.random.default_rng(seed)
+    groups = [virtual.seats(truth, rng, 2, 60, virtual.Touches(5e-6, 0.008))]
+    start = virtual.wrong_start(truth, rng, 1.0, 20.0)
+    found = _core.fit(core_problem(start, groups), nothing_held(truth), start="search", seed=seed)
+    assert found.identifiability.determined == 24
+    assert found.rms_mm == pytest.approx(0.0137, rel=0.3)  # the noise, √3 · 8 µm
+    moving = start.with_parameters(found.parameters).tip(virtual.random_poses(truth, rng, 200))
+    assert moving.std(axis=0).min() > 100.0
+
+
 def test_a_poor_minimum_is_not_called_good():
     """Lengths that belong to other poses: no search can explain them, and the ending says so."""
     truth = table_2()

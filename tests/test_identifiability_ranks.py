@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from tests.oracle import fits, virtual
+from tests.oracle.chain import chain
 from tests.oracle.core import core_problem, nothing_held
 from tests.oracle.published import six_axes, table_2, table_4
 
@@ -155,6 +156,21 @@ def test_hayati_joints_of_parallel_axes_lose_nothing_more():
     found = _core.identify(core_problem(dh, groups), nothing_held(dh))
     assert found.determined == fits.rank_of(fits.reduced_jacobian(groups, dh)) < 21
     assert {"parallel-axes"} <= {lost["cause"] for lost in found.lost}
+
+
+def test_the_base_frame_of_an_arm_whose_first_axes_are_parallel():
+    """The lift of the base is then no parameter but a combination of several; with noise too."""
+    links = [[0.1, 0.02, 300.0, 0.01], [0.3, 1.5, 50.0, 100.0], [0.2, 1.57, 30.0, 200.0], [0.1, -1.5, 20.0, 30.0]]
+    arm = chain(np.array(links), [30.0, 10.0, 120.0], (True, False, False, False))
+    rng = np.random.default_rng(11)
+    exact = virtual.seats(arm, rng, 3, 30)
+    expected = fits.rank_of(fits.reduced_jacobian([exact], arm))
+    assert expected == 16
+    noisy = replace(exact, q_rad=exact.q_rad + 2e-4 * rng.standard_normal(exact.q_rad.shape))
+    found = _core.fit(core_problem(arm, [noisy]), nothing_held(arm))
+    assert found.converged
+    assert found.identifiability.determined == expected
+    assert sorted(lost["cause"] for lost in found.identifiability.lost) == ["base-frame", "base-frame", "scale"]
 
 
 @pytest.mark.parametrize("readings", [one_seat, bar_ends, in_unknown_frame, ball_plate])
