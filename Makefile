@@ -19,14 +19,16 @@ build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bi
 
 # Every package comes from the lock file and must have the hash written there.
 $(VENV)/.locked: requirements-dev.lock
+	@echo "Installing the locked Python packages into $(VENV)/ …"
 	@python=$$(tools/prerequisites.sh build) && $$python -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.lock
+	@$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.lock
 	@touch $@
 
 # Python sources are used where they stand (an editable install), so only Rust changes need a rebuild.
 $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 	@tools/prerequisites.sh build >/dev/null
-	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@echo "Compiling the core in release mode (the first time takes a minute or two) …"
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 
 .PHONY: demo

