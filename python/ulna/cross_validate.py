@@ -90,8 +90,6 @@ def cross_validate(
     study: Study,
     by: str | int = "placement",
     progress: Progress | None = None,
-    *,
-    threads: int = 0,
     **overrides: Any,
 ) -> CrossValidation:
     """Leave each group out once, fit the rest, judge what was left out.
@@ -108,7 +106,7 @@ def cross_validate(
     for number, fold in enumerate(left_out):
         if progress is not None:
             progress("groups left out", number, len(left_out))
-        groups.append(_judge(study, fold, hold, hold_all_but_probes, threads))
+        groups.append(_judge(study, fold, hold, hold_all_but_probes))
     if progress is not None:
         progress("groups left out", len(left_out), len(left_out))
     return CrossValidation(
@@ -120,15 +118,13 @@ def cross_validate(
     )
 
 
-def _judge(
-    study: Study, fold: Fold, hold: NDArray[np.bool_], hold_all_but_probes: NDArray[np.bool_], threads: int
-) -> GroupFigures:
+def _judge(study: Study, fold: Fold, hold: NDArray[np.bool_], hold_all_but_probes: NDArray[np.bool_]) -> GroupFigures:
     training = study.subset([~mask for mask in fold.masks])
     test = study.subset(fold.masks)
     given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
     try:
-        start = run_fit(given, hold_all_but_probes, None, threads)
-        fitted = run_fit(training, hold, None, threads)
+        start = run_fit(given, hold_all_but_probes)
+        fitted = run_fit(training, hold)
     except UlnaInputError as error:
         raise UlnaInputError(f"without {fold.name} ({fold.rows} readings left out): {error}") from None
     _, before = figures(study.arm.with_parameters(start.parameters), test)

@@ -3,7 +3,6 @@
 //! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
 //! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
 
-use crate::arm::Unit;
 use crate::assembly::{Assembly, Pin};
 use crate::error::{Error, Result};
 use crate::monitor::{Monitor, Stage};
@@ -64,9 +63,6 @@ pub(crate) fn search(
     let mut assembly = Assembly::new(&thin, free, pins, monitor);
     let options = Options { max_iterations: ITERATIONS, ..Options::default() };
     let quiet = Quiet(monitor);
-    let units = problem.arm().parameter_units();
-    let joints = problem.arm().joint_parameter_count();
-    let zero_offset = |j: usize| j < joints && j.is_multiple_of(4) && units[j] == Unit::Rad;
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
     let mut x = given.to_vec();
     let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
@@ -82,7 +78,7 @@ pub(crate) fn search(
         };
         let mut x = given.to_vec();
         for (value, &j) in x.iter_mut().zip(free) {
-            if zero_offset(j) {
+            if is_zero_offset(problem, j) {
                 *value += rng.random_range(-width..width);
             }
         }
@@ -105,6 +101,11 @@ pub(crate) fn search(
         }
     }
     Ok(best)
+}
+
+/// Whether a parameter is the zero offset of a joint: what a search throws.
+pub(crate) fn is_zero_offset(problem: &Problem, parameter: usize) -> bool {
+    parameter < problem.arm().joint_parameter_count() && parameter.is_multiple_of(4)
 }
 
 /// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves.

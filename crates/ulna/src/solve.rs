@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::identifiability::Known;
 use crate::monitor::{Monitor, Unwatched};
 use crate::problem::Problem;
-use crate::search::{Plan, Throw, poor, search};
+use crate::search::{Plan, Throw, is_zero_offset, poor, search};
 use crate::solver::LeastSquares;
 use crate::solver::gram::{Cost, Gram};
 use crate::solver::lm::{self, Report, Termination, minimize, minimize_from};
@@ -93,7 +93,9 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
     let given = way.x.clone();
     let (mut searched_starts, mut search_reason) = (0, None);
 
-    let mut report = if options.start == Start::Search && !free.is_empty() {
+    let can_search = options.search_starts > 0 && free.iter().any(|&j| is_zero_offset(way.problem, j));
+
+    let mut report = if options.start == Start::Search && can_search {
         let found = search(way.problem, free, &way.pins, &given, plan(Throw::Anywhere), monitor)?;
         (way.x, searched_starts, search_reason) = (found.x, found.starts, Some(SearchReason::Asked));
         way.descend()?
@@ -101,8 +103,7 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         way.first_descent(gram)?
     };
     way.release(&mut report)?;
-    let may_search = search_reason.is_none() && options.search_starts > 0 && !free.is_empty();
-    if may_search && poor(way.problem, report.cost) {
+    if search_reason.is_none() && can_search && poor(way.problem, report.cost) {
         let found = search(way.problem, free, &way.pins, &given, plan(Throw::Widening), monitor)?;
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::PoorMinimum));
         let first = std::mem::replace(&mut way.x, found.x);
