@@ -17,9 +17,8 @@ from ulna.model import Arm
 
 F64 = NDArray[np.float64]
 
-_SINGLE_THREADED = 1 << 17
-_BLOCK_ROWS = 4096
-"""Their Jacobians stay in the processor's cache."""
+_BLOCK_ROWS = 16384
+"""Rows that one thread takes at a time."""
 
 MOVES_MM = 1e-6
 """A lost direction matters at a pose where a step of one unit along it moves the tip by more than this, mm."""
@@ -59,16 +58,9 @@ class TipUncertainty:
         return u_mm
 
     def _block(self, q_rad: F64, probe: int) -> F64:
-        # A matrix product over all parameters: the core's tip_covariance takes two and a half times as long. A stack
-        # of products small enough that BLAS does not start threads of its own, which would get into the way of ours.
-        jacobian = self._core.jacobian(q_rad, probe)
-        size = jacobian.shape[2]
-        rows = max(_SINGLE_THREADED // size**2, 1)
-        flat = np.zeros((-(-3 * len(q_rad) // rows) * rows, size))
-        flat[: 3 * len(q_rad)] = jacobian.reshape(-1, size)
-        spread = (flat.reshape(-1, rows, size) @ self._covariances[probe]).reshape(-1, size)
-        variance = np.einsum("ij,ij->i", flat, spread)[: 3 * len(q_rad)].reshape(-1, 3)
-        u_mm: F64 = np.sqrt(np.maximum(variance, 0.0))
+        parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
+        covariance = self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe])
+        u_mm: F64 = np.sqrt(np.maximum(covariance[:, [0, 3, 5]], 0.0))
         return u_mm
 
     def _tell_which(self, q_rad: F64, probe: int) -> None:

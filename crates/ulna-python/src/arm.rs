@@ -251,12 +251,13 @@ impl Arm {
         columns: PyReadonlyArray1<'py, i64>,
         covariance: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (tip, q, columns) = (self.probe(probe)?, self.angles(&q_rad)?, self.columns(&columns)?);
+        self.probe(probe)?;
+        let (q, columns) = (self.angles(&q_rad)?, self.columns(&columns)?);
         let covariance = rows(&covariance, columns.len(), "the covariance")?;
         if covariance.len() != columns.len() * columns.len() {
             return Err(UlnaError::new_err("the covariance is not square"));
         }
-        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, tip, &q, &columns, &covariance));
+        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, &q, &columns, &covariance));
         array2(py, out, 6)
     }
 
@@ -268,9 +269,10 @@ impl Arm {
         columns: PyReadonlyArray1<'py, i64>,
         directions: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (tip, q, columns) = (self.probe(probe)?, self.angles(&q_rad)?, self.columns(&columns)?);
+        self.probe(probe)?;
+        let (q, columns) = (self.angles(&q_rad)?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
-        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, tip, &q, &columns, &directions));
+        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, &q, &columns, &directions));
         Ok(array1(py, &out))
     }
 

@@ -14,8 +14,8 @@ use ulna::kinematics::{Chain, Poses, batch};
 use ulna::monitor::Unwatched;
 use ulna::monte_carlo::{Repeat, recalibrate};
 use ulna::problem::Problem;
-use ulna::residuals::Noise;
 use ulna::residuals::length::LengthRows;
+use ulna::residuals::{Noise, Weighing};
 use ulna::simd::{Columns, simd_level};
 use ulna::solver::{LeastSquares, RowBlock, RowSink};
 
@@ -133,7 +133,7 @@ fn main() {
 
     let mut lengths = problem(&mut rng, 10_000, None);
     let x = lengths.arm().parameters();
-    lengths.weigh(&x);
+    lengths.weigh(&x, Weighing::Full);
     let mut assembly = Assembly::new(&lengths, &free, &[], &Unwatched);
     let rows = best(200, || assembly.rows(&x, true, &mut Dropped).expect("rows"));
     figures.push(("residual_jacobian_poses_per_s".into(), 2e4 / rows));

@@ -1,14 +1,15 @@
 //! From readings to a calibrated arm: [`solve`], fold twins, judge what was determined and how well.
 
 use crate::arm::Arm;
-use crate::assembly::{Assembly, Pin, pins};
+use crate::assembly::Assembly;
 use crate::covariance::covariance;
 use crate::decomposition::Decomposition;
 use crate::error::{Error, Result};
 use crate::identifiability::{Context, Identifiability, Known, analyse};
 use crate::monitor::{Monitor, Unwatched};
+use crate::pins::{Pin, pins};
 use crate::problem::Problem;
-use crate::residuals::Unweighted;
+use crate::residuals::{Unweighted, Weighing};
 pub use crate::solve::{Options, SearchReason, Solution, Start, solve};
 use crate::solver::LeastSquares;
 use crate::solver::triangle::Triangle;
@@ -86,7 +87,7 @@ pub fn identify(problem: &mut Problem, free: &[usize], known: Known, monitor: &d
         return Err(Error::NoReadings);
     }
     let parameters = problem.arm().parameters();
-    problem.weigh(&parameters);
+    problem.weigh(&parameters, Weighing::Full);
     let (pins, _) = pins(problem, free, &problem.arm().parameters(), monitor)?;
     let judged = judge(problem, free, &pins, &parameters, monitor)?;
     let sigma = if problem.noise().is_some() { 1.0 } else { ASSUMED_SCATTER_MM };
@@ -182,7 +183,7 @@ fn check_count(problem: &mut Problem, free: &[usize]) -> Result<()> {
         return Ok(());
     }
     let parameters = problem.arm().parameters();
-    problem.weigh(&parameters);
+    problem.weigh(&parameters, Weighing::Full);
     let kept = judge(problem, free, &[], &parameters, &Unwatched)?.decomposition.kept.len();
     let unknowns = placement_unknowns + kept;
     if observations >= unknowns {

@@ -88,11 +88,7 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Becaus
         return because;
     }
     if motion.explained_by(false) {
-        return Because {
-            cause: Cause::BaseFrame,
-            because: "it only moves the base frame: the readings see the arm from nowhere but itself".into(),
-            remedy: "none is needed, no length depends on it; coordinates of features in the base frame (frame = \"arm\") would fix it".into(),
-        };
+        return base_frame();
     }
     if motion.explained_by(true) {
         return scale();
@@ -113,6 +109,17 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Becaus
         remedy:
             "take readings at other places and directions, every joint turned over its travel; or hold these parameters"
                 .into(),
+    }
+}
+
+/// What is said of a motion of the base.
+pub(crate) fn base_frame() -> Because {
+    Because {
+        cause: Cause::BaseFrame,
+        because: "it only moves the base frame: the readings see the arm from nowhere but itself".into(),
+        remedy: "none is needed, no length depends on it; coordinates of features in the base frame (frame = \"arm\") \
+                 would fix it"
+            .into(),
     }
 }
 

@@ -1,9 +1,9 @@
 //! What the readings determine, what they do not, and why.
 
 use crate::arm::{Arm, Unit};
-use crate::assembly::Pin;
-use crate::causes::{Because, explain, scale};
+use crate::causes::{Because, base_frame, explain, scale};
 use crate::decomposition::Decomposition;
+use crate::pins::{Kind, Pin};
 
 /// A direction that no reading sees.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,6 +94,7 @@ pub(crate) fn analyse(decomposition: &Decomposition, context: &Context) -> Ident
         combination: combination(direction, &names),
         because: match origin {
             Origin::Scale => scale(),
+            Origin::Lift => base_frame(),
             Origin::Start => explain(direction, context.start, context),
             Origin::Here => explain(direction, context.arm, context),
         },
@@ -127,6 +128,8 @@ fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
 enum Origin {
     /// known beforehand: no reading knows a length
     Scale,
+    /// known beforehand: nothing fixes the base along its first axis
+    Lift,
     /// at the start, and pinned there
     Start,
     /// at the arm in question
@@ -144,12 +147,13 @@ fn lost_directions(decomposition: &Decomposition, pins: &[Pin], count: usize) ->
         directions.push((direction, Origin::Here));
     }
     let scaled = |pin: &Pin| kept.iter().zip(norms).map(|(&j, norm)| pin.direction[j] * norm).collect::<Vec<f64>>();
-    let grown: Vec<Vec<f64>> = pins.iter().filter(|p| p.is_scale).map(scaled).collect();
-    let mut pinned: Vec<Vec<f64>> = pins.iter().filter(|p| !p.is_scale).map(scaled).collect();
+    let of = |kind: Kind| pins.iter().filter(move |p| p.kind == kind).map(scaled).collect::<Vec<_>>();
+    let (grown, lifted, mut pinned) = (of(Kind::Growth), of(Kind::Lift), of(Kind::Family));
     let mut null = decomposition.null_vectors();
     reduce(&mut pinned);
     reduce(&mut null);
-    for (vectors, origin) in [(grown, Origin::Scale), (pinned, Origin::Start), (null, Origin::Here)] {
+    let all = [(grown, Origin::Scale), (lifted, Origin::Lift), (pinned, Origin::Start), (null, Origin::Here)];
+    for (vectors, origin) in all {
         for v in vectors {
             let mut direction = vec![0.0; count];
             let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);

@@ -12,6 +12,7 @@
 //! | [`solver`] | least squares from streamed rows; knows no kinematics | `simd` |
 //! | [`decomposition`], [`covariance`] | singular values and what follows from them; know no kinematics | `solver` |
 //! | [`identifiability`], [`causes`] | what is lost, in parameters and words | `decomposition` |
+//! | [`pins`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
 //! | [`symmetry`] | twins: parameter sets that describe the same readings | `arm` |
 //! | [`solve`], `search` | the way to the minimum | `assembly`, `solver` |
 //! | [`calibrate`] | the fit and all that is judged of it | everything above |
@@ -62,6 +63,7 @@ pub mod kinematics;
 pub mod monitor;
 pub mod monte_carlo;
 pub mod numdiff;
+pub mod pins;
 pub mod problem;
 pub mod propagate;
 pub mod residuals;

@@ -1,13 +1,14 @@
 //! Calibrations repeated on new noise: what the uncertainties say, checked against the truth.
 
 use crate::arm::Arm;
-use crate::assembly::{Assembly, Pin, pins};
+use crate::assembly::Assembly;
 use crate::calibrate::judge;
 use crate::covariance::covariance;
 use crate::error::{Error, Result};
 use crate::monitor::{Monitor, Stage, Unwatched};
+use crate::pins::{Pin, pins};
 use crate::problem::Problem;
-use crate::residuals::Model;
+use crate::residuals::{Model, Weighing};
 use crate::solver::lm::{self, Report, minimize};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -48,7 +49,7 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
     let noise = problem.noise().ok_or(Error::NoNoise)?;
     let truth = Model::new(repeat.truth);
     let mut problem = problem.clone();
-    problem.weigh(&repeat.truth.parameters());
+    problem.weigh(&repeat.truth.parameters(), Weighing::Even);
     let (pins, _) = pins(&problem, free, &repeat.truth.parameters(), monitor)?;
     let (problem, pins) = (&problem, pins.as_slice());
     let done = AtomicUsize::new(0);
@@ -59,8 +60,12 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(repeat.seed, run as u64));
         let groups = problem.groups().iter().map(|g| g.redrawn(&truth, noise, &mut rng)).collect();
-        let drawn = problem.with_groups(groups);
-        let (found, report) = descend(&drawn, free, pins)?;
+        let mut drawn = problem.with_groups(groups);
+        let (mut found, mut report) = descend(&drawn, free, pins, &drawn.arm().parameters())?;
+        if drawn.weighs_directions() {
+            drawn.weigh(&found, Weighing::Full);
+            (found, report) = descend(&drawn, free, pins, &found)?;
+        }
         let u =
             if repeat.uncertainties { uncertainties(&drawn, free, pins, &found)? } else { vec![f64::NAN; found.len()] };
         if !monitor.progress(Stage::MonteCarlo, done.fetch_add(1, Ordering::Relaxed), repeat.runs) {
@@ -77,9 +82,9 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
     }
 }
 
-/// One fit from the problem's own arm, weights as they are: all parameters, and how it ended.
-fn descend(problem: &Problem, free: &[usize], pins: &[Pin]) -> Result<(Vec<f64>, Report)> {
-    let mut parameters = problem.arm().parameters();
+/// One fit from some parameters, weights as they are: all parameters, and how it ended.
+fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Result<(Vec<f64>, Report)> {
+    let mut parameters = from.to_vec();
     let mut x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
     let mut assembly = Assembly::new(problem, free, pins, &Unwatched);
     let report = minimize(&mut assembly, &mut x, &lm::Options::default(), &Unwatched)?;

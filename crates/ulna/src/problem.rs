@@ -4,7 +4,7 @@ use crate::arm::{Arm, JointModel};
 use crate::error::{Error, Result};
 use crate::residuals::length::{LengthRows, Lengths};
 use crate::residuals::points::{Features, PointRows, Points};
-use crate::residuals::{Model, Noise, Readings, Unweighted};
+use crate::residuals::{Model, Noise, Readings, Unweighted, Weighing};
 use nalgebra::Vector3;
 
 /// Readings of features of placed artefacts, to be explained by one arm.
@@ -253,12 +253,22 @@ impl Problem {
         (groups, rms)
     }
 
+    /// Whether the stated noise makes weights depend on where the arm is.
+    pub fn weighs_encoders(&self) -> bool {
+        self.noise.as_ref().is_some_and(|noise| noise.encoder_rad.iter().any(|&sigma| sigma > 0.0))
+    }
+
+    /// Whether, moreover, some reading weighs its directions differently.
+    pub fn weighs_directions(&self) -> bool {
+        self.weighs_encoders() && self.groups.iter().any(|g| g.equations() > g.len())
+    }
+
     /// Weighs the readings for the stated noise at some parameters.
-    pub fn weigh(&mut self, parameters: &[f64]) {
+    pub fn weigh(&mut self, parameters: &[f64], how: Weighing) {
         let mut model = Model::new(&self.arm);
         model.set_parameters(parameters);
         for group in &mut self.groups {
-            group.weigh(&model, self.noise.as_ref());
+            group.weigh(&model, self.noise.as_ref(), how);
         }
     }
 }

@@ -1,89 +1,136 @@
 //! What uncertain parameters do to a measured point.
 
 use crate::arm::Arm;
-use crate::kinematics::batch::for_each_derivative;
-use crate::kinematics::{Chain, jacobian, tip_mm};
+use crate::kinematics::batch::{forward, gradient, scratch_len};
+use crate::kinematics::{Chain, Poses, jacobian, tip_mm};
 use crate::numdiff;
+use crate::simd::{Columns, Lanes};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Poses whose derivatives are kept at once.
-const TILE: usize = 512;
+const TILE: usize = 256;
 
 /// `J C Jᵀ` of each pose: xx, xy, xz, yy, yz, zz in mm², row-major. `columns` names the parameters that the row-major
 /// covariance is of.
-pub fn tip_covariance(
-    arm: &Arm,
-    probe: usize,
-    tip_mm: [f64; 3],
-    q_rad: &[f64],
-    columns: &[usize],
-    covariance: &[f64],
-) -> Vec<f64> {
-    let k = columns.len();
-    let mut out = Vec::with_capacity(q_rad.len() / arm.encoders() * 6);
-    let mut image = vec![0.0; k];
-    tiles(arm, probe, tip_mm, q_rad, columns, |rows| {
-        let mut full = [[0.0; 3]; 3];
-        for a in 0..3 {
-            image.fill(0.0);
-            for (j, derivative) in rows[a * k..(a + 1) * k].iter().enumerate() {
-                for (value, c) in image.iter_mut().zip(&covariance[j * k..(j + 1) * k]) {
-                    *value += derivative * c;
-                }
-            }
-            for (b, value) in full[a].iter_mut().enumerate() {
-                *value = rows[b * k..(b + 1) * k].iter().zip(&image).map(|(d, i)| d * i).sum();
-            }
-        }
-        out.extend([full[0][0], full[0][1], full[0][2], full[1][1], full[1][2], full[2][2]]);
-    });
-    out
+pub fn tip_covariance(arm: &Arm, probe: usize, q_rad: &[f64], columns: &[usize], covariance: &[f64]) -> Vec<f64> {
+    over_tiles::<6>(arm, probe, q_rad, columns, Quantity::Covariance(covariance))
 }
 
 /// How far the tip moves at each pose, mm, for that of the row-major directions (over `columns`) that moves it most.
-pub fn direction_effect(
+pub fn direction_effect(arm: &Arm, probe: usize, q_rad: &[f64], columns: &[usize], directions: &[f64]) -> Vec<f64> {
+    over_tiles::<1>(arm, probe, q_rad, columns, Quantity::Directions(directions))
+}
+
+/// What is asked of a pose's derivatives.
+#[derive(Clone, Copy)]
+enum Quantity<'a> {
+    /// six numbers
+    Covariance(&'a [f64]),
+    /// one number
+    Directions(&'a [f64]),
+}
+
+fn over_tiles<const N: usize>(
     arm: &Arm,
     probe: usize,
-    tip_mm: [f64; 3],
     q_rad: &[f64],
     columns: &[usize],
-    directions: &[f64],
+    quantity: Quantity,
 ) -> Vec<f64> {
-    let k = columns.len();
-    let mut out = Vec::with_capacity(q_rad.len() / arm.encoders());
-    tiles(arm, probe, tip_mm, q_rad, columns, |rows| {
-        let effect = |direction: &[f64]| {
-            let moved = |a: usize| rows[a * k..(a + 1) * k].iter().zip(direction).map(|(d, v)| d * v).sum::<f64>();
-            (0..3).map(|a| moved(a).powi(2)).sum::<f64>().sqrt()
-        };
-        out.push(directions.chunks_exact(k.max(1)).map(effect).fold(0.0, f64::max));
-    });
+    let chain = Chain::new(arm);
+    let (n, joints) = (arm.encoders(), arm.joint_parameter_count());
+    // which of the columns asked about each derivative of the kernel is; the tips of other probes move nothing
+    let asked = |parameter: usize| columns.iter().position(|&c| c == parameter);
+    let place: Vec<Option<usize>> =
+        (0..joints).chain(arm.tip_offset(probe)..arm.tip_offset(probe) + 3).map(asked).chain([None]).collect();
+    let mut derivatives = Columns::zeros(3 * columns.len(), TILE);
+    let mut answers = Columns::zeros(N, TILE);
+    let mut scratch = vec![0.0; scratch_len(&chain)];
+    let mut out = Vec::with_capacity(q_rad.len() / n * N);
+    for q in q_rad.chunks(TILE * n) {
+        let rows = q.len() / n;
+        Arch::new().dispatch(PropagateOp {
+            chain: &chain,
+            poses: &Poses::from_rows(q, n),
+            tip_mm: arm.probes()[probe].tip_mm,
+            place: &place,
+            count: columns.len(),
+            quantity,
+            derivatives: &mut derivatives,
+            answers: &mut answers,
+            scratch: &mut scratch,
+        });
+        out.extend((0..rows).flat_map(|row| (0..N).map(move |k| (row, k))).map(|(row, k)| answers.column(k)[row]));
+    }
     out
 }
 
-/// Calls `each` with the 3 × columns derivatives of every pose in turn, row-major.
-fn tiles(arm: &Arm, probe: usize, tip_mm: [f64; 3], q_rad: &[f64], columns: &[usize], mut each: impl FnMut(&[f64])) {
-    let chain = Chain::new(arm);
-    let joints = arm.joint_parameter_count();
-    let k = columns.len();
-    // where each kernel column goes; the parameters of other probes move nothing
-    let kernel = |j: usize| if j < joints { j } else { j.wrapping_sub(arm.tip_offset(probe)).saturating_add(joints) };
-    let mut place = vec![None; joints + 4];
-    for (at, &j) in columns.iter().enumerate() {
-        if let Some(slot) = place[..joints + 3].get_mut(kernel(j)) {
-            *slot = Some(at);
-        }
-    }
-    let mut rows = vec![0.0; TILE * 3 * k];
-    for q in q_rad.chunks(TILE * arm.encoders()) {
-        for_each_derivative(&chain, tip_mm, q, |row, component, column, value| {
-            if let Some(at) = place[column] {
-                rows[(3 * row + component) * k + at] = value;
+struct PropagateOp<'a> {
+    chain: &'a Chain,
+    poses: &'a Poses,
+    tip_mm: [f64; 3],
+    place: &'a [Option<usize>],
+    count: usize,
+    quantity: Quantity<'a>,
+    derivatives: &'a mut Columns,
+    answers: &'a mut Columns,
+    scratch: &'a mut [f64],
+}
+
+impl WithSimd for PropagateOp<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let PropagateOp { chain, poses, tip_mm, place, count, quantity, derivatives, answers, scratch } = self;
+        let zero = Lanes::splat(simd, 0.0);
+        let tip = tip_mm.map(|t| Lanes::splat(simd, t));
+        for k in 0..poses.q_rad().padded_rows() / S::F64_LANES {
+            forward(simd, chain, poses, k, tip, scratch);
+            for component in 0..3 {
+                let mut axis = [zero; 3];
+                axis[component] = Lanes::splat(simd, 1.0);
+                gradient(simd, chain, scratch, axis, |column, value| {
+                    if let Some(at) = place[column] {
+                        derivatives.store(component * count + at, k, value);
+                    }
+                });
             }
-        });
-        let count = q.len() / arm.encoders();
-        rows.chunks_exact((3 * k).max(1)).take(count).for_each(&mut each);
-        if k == 0 {
-            (0..count).for_each(|_| each(&[]));
+            match quantity {
+                Quantity::Covariance(covariance) => {
+                    let mut sums = [zero; 6];
+                    for j in 0..count {
+                        let mut image = [zero; 3];
+                        for (i, &c) in covariance[j * count..(j + 1) * count].iter().enumerate() {
+                            let c = Lanes::splat(simd, c);
+                            for (a, sum) in image.iter_mut().enumerate() {
+                                *sum = derivatives.load(simd, a * count + i, k).mul_add(c, *sum);
+                            }
+                        }
+                        let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+                        for (sum, (a, b)) in sums.iter_mut().zip(pairs) {
+                            *sum = derivatives.load(simd, a * count + j, k).mul_add(image[b], *sum);
+                        }
+                    }
+                    for (at, sum) in sums.into_iter().enumerate() {
+                        answers.store(at, k, sum);
+                    }
+                }
+                Quantity::Directions(directions) => {
+                    let mut most = zero;
+                    for direction in directions.chunks_exact(count.max(1)) {
+                        let mut moved = [zero; 3];
+                        for (j, &weight) in direction.iter().enumerate() {
+                            let weight = Lanes::splat(simd, weight);
+                            for (a, sum) in moved.iter_mut().enumerate() {
+                                *sum = derivatives.load(simd, a * count + j, k).mul_add(weight, *sum);
+                            }
+                        }
+                        let squared = moved[2].mul_add(moved[2], moved[1].mul_add(moved[1], moved[0] * moved[0]));
+                        most = most.max(squared);
+                    }
+                    answers.store(0, k, most.sqrt());
+                }
+            }
         }
     }
 }

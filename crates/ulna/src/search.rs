@@ -3,9 +3,11 @@
 //! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
 //! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
 
-use crate::assembly::{Assembly, Pin};
+use crate::assembly::Assembly;
 use crate::error::{Error, Result};
+use crate::kinematics::encoder_jacobian;
 use crate::monitor::{Monitor, Stage};
+use crate::pins::{Kind, Pin};
 use crate::problem::Problem;
 use crate::solver::LeastSquares;
 use crate::solver::lm::{Options, minimize};
@@ -67,6 +69,11 @@ pub(crate) fn search(
     let mut x = given.to_vec();
     let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
     let mut best = Searched { x, cost: cost_given, cost_given, starts: 1 };
+    let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
+    let mobility_given = mobility(&thin, free, given);
+    if sizeless && mobility(&thin, free, &best.x) < COLLAPSED * mobility_given {
+        best.cost = f64::INFINITY;
+    }
     let mut agreeing = 1;
     for attempt in 0..plan.most_starts {
         if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
@@ -84,6 +91,9 @@ pub(crate) fn search(
         }
         let report = minimize(&mut assembly, &mut x, &options, &quiet)?;
         best.starts += 1;
+        if sizeless && mobility(&thin, free, &x) < COLLAPSED * mobility_given {
+            continue;
+        }
         let tie = 1e-6 * best.cost + assembly.negligible_cost();
         if report.cost < best.cost - tie {
             best.x = x;
@@ -101,6 +111,24 @@ pub(crate) fn search(
         }
     }
     Ok(best)
+}
+
+/// An arm whose joints move its tip by less than this part of what they did before has collapsed: readings of seats that
+/// know no length are met exactly by a tip that nothing moves.
+const COLLAPSED: f64 = 0.3;
+
+/// How far the tip moves with its joints, mm/rad, root mean square over some of the readings.
+fn mobility(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
+    let mut parameters = problem.arm().parameters();
+    for (&j, &value) in free.iter().zip(x) {
+        parameters[j] = value;
+    }
+    let Ok(arm) = problem.arm().with_parameters(&parameters) else {
+        return 0.0;
+    };
+    let poses = problem.sample_poses(40);
+    let moved = poses.iter().map(|(probe, q_rad)| encoder_jacobian(&arm, *probe, q_rad).norm_squared());
+    (moved.sum::<f64>() / poses.len().max(1) as f64).sqrt()
 }
 
 /// Whether a parameter is the zero offset of a joint: what a search throws.

@@ -1,10 +1,12 @@
 //! The way to the minimum: weigh, pin what cannot be seen, descend, notice a poor end and search on, weigh again.
 
-use crate::assembly::{Assembly, Pin, pins};
+use crate::assembly::Assembly;
 use crate::error::{Error, Result};
 use crate::identifiability::Known;
 use crate::monitor::{Monitor, Unwatched};
+use crate::pins::{Kind, Pin, pins};
 use crate::problem::Problem;
+use crate::residuals::Weighing;
 use crate::search::{Plan, Throw, is_zero_offset, poor, search};
 use crate::solver::LeastSquares;
 use crate::solver::gram::{Cost, Gram};
@@ -83,7 +85,7 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         return Err(Error::NoReadings);
     }
     let start = problem.arm().parameters();
-    problem.weigh(&start);
+    problem.weigh(&start, Weighing::Even);
     let (pins, gram) = pins(problem, free, &start, monitor)?;
     let cost_start = gram.cost();
     let x = free.iter().map(|&j| start[j]).collect();
@@ -179,7 +181,7 @@ impl Way<'_> {
     /// Lets go of what was pinned only because the start could not tell, where the readings can: a probe taken for
     /// straight may turn out not to be.
     fn release(&mut self, report: &mut Report) -> Result<()> {
-        let kept: Vec<Pin> = self.pins.iter().filter(|p| p.is_scale).cloned().collect();
+        let kept: Vec<Pin> = self.pins.iter().filter(|p| p.kind != Kind::Family).cloned().collect();
         let families = self.pins.len() - kept.len();
         if families == 0 || report.termination == Termination::Exact {
             return Ok(());
@@ -197,14 +199,13 @@ impl Way<'_> {
         Ok(())
     }
 
-    /// Takes the weights at the solution and goes on, until that changes nothing.
+    /// Takes the weights at the solution, now by direction, and goes on, until that changes nothing.
     fn reweigh(&mut self, report: &mut Report) -> Result<()> {
-        let depends = |noise: &crate::residuals::Noise| noise.encoder_rad.iter().any(|&s| s > 0.0);
-        if !self.problem.noise().is_some_and(depends) || self.free.is_empty() {
+        if !self.problem.weighs_encoders() || self.free.is_empty() {
             return Ok(());
         }
         for _ in 0..REWEIGHINGS {
-            self.problem.weigh(&self.parameters());
+            self.problem.weigh(&self.parameters(), Weighing::Full);
             let again = self.descend()?;
             *report = added(*report, again);
             if again.iterations == 0 || again.cost_start - again.cost < 1e-6 * again.cost {

@@ -3,10 +3,12 @@
 mod common;
 
 use common::{KINDS, any_arm, noises, rng};
-use ulna::assembly::{Assembly, pins};
+use ulna::assembly::Assembly;
 use ulna::monitor::Unwatched;
 use ulna::numdiff::worst_difference;
+use ulna::pins::{Kind, pins};
 use ulna::problem::Problem;
+use ulna::residuals::Weighing;
 use ulna::solver::LeastSquares;
 use ulna::solver::gram::{Cost, Gram};
 use ulna::solver::triangle::Triangle;
@@ -20,7 +22,7 @@ fn for_all(check: impl Fn(&str, &Problem, &[usize])) {
             let mut problem = Problem::new(arm, noise).unwrap();
             add(&mut problem, &mut rng);
             let start = problem.arm().parameters();
-            problem.weigh(&start);
+            problem.weigh(&start, Weighing::Full);
             let free: Vec<usize> = (0..start.len()).collect();
             check(&format!("{kind}, {noise_label}"), &problem, &free);
         }
@@ -108,7 +110,11 @@ fn a_part_of_the_readings_has_the_whole_ones_rank() {
             assert_eq!(thin.placement_unknowns(), group.placement_unknowns(), "{label}");
         }
         let (pinned, _) = pins(problem, free, &problem.arm().parameters(), &Unwatched).unwrap();
-        assert_eq!(pinned.iter().filter(|p| p.is_scale).count(), usize::from(problem.scale_free()), "{label}");
+        assert_eq!(
+            pinned.iter().filter(|p| p.kind == Kind::Growth).count(),
+            usize::from(problem.scale_free()),
+            "{label}"
+        );
     });
 }
 

@@ -4,7 +4,7 @@
 //! r = w (‖p(q) - p(q')‖ - L)      ∂r = w u · (∂p(q) - ∂p(q'))      u = (p(q) - p(q')) / ‖p(q) - p(q')‖
 //! ```
 
-use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Writer};
+use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Weighing, Writer};
 use crate::error::Result;
 use crate::kinematics::batch::{forward, gradient, gradient_between, scratch_len};
 use crate::kinematics::{Chain, Poses};
@@ -119,7 +119,7 @@ impl Readings for Lengths {
         }
     }
 
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>) {
+    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, _: Weighing) {
         let mut scratch = [vec![0.0; scratch_len(&model.chain)], vec![0.0; scratch_len(&model.chain)]];
         for run in &mut self.runs {
             let mut weight = ones(run.rows.len());

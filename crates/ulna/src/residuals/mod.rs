@@ -26,6 +26,15 @@ pub struct Noise {
     pub seat_mm: f64,
 }
 
+/// How a reading's directions are weighed against each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weighing {
+    /// All alike: at parameters that are far off, the directions of the encoders' noise are not known yet.
+    Even,
+    /// By the noise in each.
+    Full,
+}
+
 /// The numbers of an arm as the residuals use them.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -115,7 +124,7 @@ pub trait Readings: Debug + Send + Sync {
     fn keep_sin_cos(&mut self);
 
     /// Weighs every reading for the noise, at these parameters; without noise every reading weighs one.
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>);
+    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, how: Weighing);
 
     /// Sum of the squared weights of all readings, 1/mm².
     fn weight_squared_sum(&self) -> f64;

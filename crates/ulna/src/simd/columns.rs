@@ -62,6 +62,11 @@ impl Columns {
         value.store(&mut self.data, column * (self.stride / S::F64_LANES) + k);
     }
 
+    /// Number of rows, the padding included.
+    pub fn padded_rows(&self) -> usize {
+        self.stride
+    }
+
     /// One column with its padding.
     #[inline(always)]
     pub fn column(&self, index: usize) -> &[f64] {

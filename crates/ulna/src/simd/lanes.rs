@@ -59,6 +59,12 @@ impl<S: Simd> Lanes<S> {
         Lanes(simd, simd.select_f64s(simd.equal_f64s(self.1, zero), zero, inverse))
     }
 
+    /// The larger of two, lane by lane.
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Lanes(self.0, self.0.max_f64s(self.1, other.1))
+    }
+
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         self.0.reduce_sum_f64s(self.1)

@@ -11,7 +11,7 @@ mod rows;
 mod whitening;
 
 use super::length::normal;
-use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Writer};
+use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Weighing, Writer};
 use crate::error::Result;
 use crate::kinematics::Poses;
 use crate::kinematics::batch::tips_mm;
@@ -241,8 +241,12 @@ impl Readings for Points {
         self.poses.keep_sin_cos();
     }
 
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>) {
-        self.whitening = Whitening::for_noise(self, model, noise);
+    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, how: Weighing) {
+        let full = Whitening::for_noise(self, model, noise);
+        self.whitening = match how {
+            Weighing::Full => full,
+            Weighing::Even => full.even(self.order.len()),
+        };
     }
 
     fn weight_squared_sum(&self) -> f64 {

@@ -48,6 +48,13 @@ impl Whitening {
         Whitening::Each(whitening)
     }
 
+    /// One weight for all: that of the mean variance of `count` readings.
+    pub fn even(self, count: usize) -> Whitening {
+        let variance = |row: usize| 3.0 / self.at(row).norm_squared();
+        let mean = (0..count).map(variance).sum::<f64>() / count.max(1) as f64;
+        Whitening::Same(mean.sqrt().recip())
+    }
+
     /// `W` of one reading.
     pub fn at(&self, row: usize) -> Matrix3<f64> {
         match self {

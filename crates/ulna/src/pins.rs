@@ -1,0 +1,171 @@
+//! Directions that no reading sees, and the equations that keep them at their start.
+//!
+//! Some are known beforehand: an arm whose readings know no length may grow, an arm whose artefacts stand freely may be
+//! lifted along its first axis. With residuals left, their columns do not vanish (growth makes the residuals grow),
+//! and a fit would follow them: all lengths to zero, if nothing held the size. Others are found at the start, where
+//! a probe on the last axis leaves a family of parameters that describes the same readings.
+
+use crate::arm::{JointModel, Unit};
+use crate::assembly::Assembly;
+use crate::decomposition::Decomposition;
+use crate::error::Result;
+use crate::kinematics::jacobian;
+use crate::monitor::Monitor;
+use crate::problem::Problem;
+use crate::solver::LeastSquares;
+use crate::solver::gram::{Gram, smallest_pivot};
+use crate::solver::triangle::Triangle;
+use nalgebra::{DMatrix, DVector};
+
+/// Why a direction is pinned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The whole arm grows.
+    Growth,
+    /// The base moves along its first axis (the turn about it is a parameter of its own and has no column at all).
+    Lift,
+    /// A family of parameters that describes the same readings at the start.
+    Family,
+}
+
+/// One more equation that keeps a direction at its start. Nothing opposes it, so it is met exactly, whatever the noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pin {
+    /// Why.
+    pub kind: Kind,
+    /// The direction over the unknowns, rad and mm.
+    pub direction: Vec<f64>,
+    /// The equation's coefficients, in the unit of a weighted residual per unknown.
+    pub(crate) coefficients: Vec<f64>,
+    start: Vec<f64>,
+}
+
+impl Pin {
+    /// How far `x` is from the start along the pin.
+    pub(crate) fn residual(&self, x: &[f64]) -> f64 {
+        let moved = x.iter().zip(&self.start).zip(&self.coefficients);
+        moved.map(|((x, start), c)| (x - start) * c).sum()
+    }
+
+    /// The direction at other parameters: a symmetry's goes with the arm.
+    pub(crate) fn direction_at(&self, problem: &Problem, free: &[usize], parameters: &[f64]) -> Vec<f64> {
+        let here = match self.kind {
+            Kind::Growth => growth(problem, free, parameters),
+            Kind::Lift => lift(problem, free, parameters),
+            Kind::Family => None,
+        };
+        here.unwrap_or_else(|| self.direction.clone())
+    }
+}
+
+/// A pivot of the unit-diagonal normal equations below this calls for a look at the singular values.
+const SUSPICIOUS_PIVOT: f64 = 1e-10;
+
+/// The directions that the readings do not determine at some parameters, to be pinned where the problem's own arm has
+/// them; and the normal equations there.
+///
+/// # Errors
+/// [`crate::Error::Interrupted`].
+pub fn pins(problem: &Problem, free: &[usize], parameters: &[f64], monitor: &dyn Monitor) -> Result<(Vec<Pin>, Gram)> {
+    let own = problem.arm().parameters();
+    let start: Vec<f64> = free.iter().map(|&j| own[j]).collect();
+    let here: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, free, &[], monitor);
+    let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
+    let mut pins = Vec::new();
+    for (kind, direction) in
+        [(Kind::Growth, growth(problem, free, parameters)), (Kind::Lift, lift(problem, free, parameters))]
+    {
+        let Some(direction) = direction else { continue };
+        // orthogonal to the direction when unknowns are measured by what they move
+        let natural = assembly.natural_scale();
+        let size = direction.iter().zip(natural).map(|(d, n)| (d * n).powi(2)).sum::<f64>().sqrt();
+        let coefficient = |(d, n): (&f64, &f64)| d * n * n / size * weights.sqrt();
+        let coefficients = direction.iter().zip(natural).map(coefficient).collect();
+        pins.push(Pin { kind, direction, coefficients, start: start.clone() });
+    }
+    let mut gram = Gram::new(free.len());
+    assembly.rows(&here, true, &mut gram)?;
+    if smallest_pivot(&gram, assembly.natural_scale()) > SUSPICIOUS_PIVOT {
+        return Ok((pins, gram));
+    }
+    let mut triangle = Triangle::new(free.len());
+    assembly.rows(&here, true, &mut triangle)?;
+    let symmetries: Vec<&[f64]> = pins.iter().map(|p| p.direction.as_slice()).collect();
+    let decomposition = Decomposition::new(&triangle, free.len(), assembly.natural_scale(), &symmetries);
+    for vector in decomposition.null_vectors() {
+        let mut pin = Pin {
+            kind: Kind::Family,
+            direction: vec![0.0; free.len()],
+            coefficients: vec![0.0; free.len()],
+            start: start.clone(),
+        };
+        for ((&unknown, norm), v) in decomposition.kept.iter().zip(&decomposition.norms).zip(&vector) {
+            pin.direction[unknown] = v / norm;
+            pin.coefficients[unknown] = v * norm;
+        }
+        pins.push(pin);
+    }
+    Ok((pins, gram))
+}
+
+/// The direction in which all lengths grow, over the unknowns: where no reading knows a length and none is held.
+fn growth(problem: &Problem, free: &[usize], values: &[f64]) -> Option<Vec<f64>> {
+    if !problem.scale_free() || problem.groups().is_empty() {
+        return None;
+    }
+    let units = problem.arm().parameter_units();
+    let used = problem.probes_used();
+    let joints = problem.arm().joint_parameter_count();
+    let matters = |j: usize| j < joints || used[(j - joints) / 3];
+    // d_1 only lifts the base and so does not hold the size
+    let holds = |j: &usize| units[*j] == Unit::Mm && matters(*j) && *j != 3 && values[*j] != 0.0 && !free.contains(j);
+    if (0..values.len()).any(|j| holds(&j)) {
+        return None;
+    }
+    let grows = |&j: &usize| if units[j] == Unit::Mm && matters(j) && j != 3 { values[j] } else { 0.0 };
+    let lengths = nalgebra::DVector::from_iterator(free.len(), free.iter().map(grows));
+    let norm = lengths.norm();
+    (norm > 0.0).then(|| (lengths / norm).as_slice().to_vec())
+}
+
+/// Postures at which the lift is compared with what the parameters can do.
+const POSTURES: usize = 40;
+
+/// The combination of parameters that moves the base along its first axis, where artefacts stand freely and the first
+/// joint has no d of its own to do it (a Hayati joint: the offsets of the next joints do).
+fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Option<Vec<f64>> {
+    if !problem.base_free() || problem.arm().joints()[0].model == JointModel::Dh {
+        return None;
+    }
+    let arm = problem.arm().with_parameters(parameters).ok()?;
+    let used = problem.probes_used();
+    let probes: Vec<usize> = (0..used.len()).filter(|&p| used[p]).collect();
+    let units = arm.parameter_units();
+    let reach = problem.reach_mm();
+    let natural = |j: usize| if units[j] == Unit::Rad { reach } else { 1.0 };
+    let base = problem.base_parameters();
+    let columns: Vec<usize> = (0..free.len()).filter(|&c| !base.contains(&free[c])).collect();
+    let mut a = DMatrix::zeros(3 * POSTURES, columns.len());
+    let mut b = DVector::zeros(3 * POSTURES);
+    for row in 0..POSTURES {
+        // any postures do that are unlike each other: multiples of an irrational part of a turn
+        let angle = |i: usize| ((row * arm.encoders() + i) as f64 * 0.618_033_988_749_895).fract() * 6.0 - 3.0;
+        let q_rad: Vec<f64> = (0..arm.encoders()).map(angle).collect();
+        let jacobian = jacobian(&arm, probes[row % probes.len()], &q_rad);
+        for (k, &c) in columns.iter().enumerate() {
+            let moved = jacobian.column(free[c]) / natural(free[c]);
+            a.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&moved);
+        }
+        b[3 * row + 2] = 1.0;
+    }
+    let solution = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
+    if (a * &solution - &b).norm() > 1e-7 * b.norm() {
+        return None;
+    }
+    let mut direction = vec![0.0; free.len()];
+    for (k, &c) in columns.iter().enumerate() {
+        direction[c] = solution[k] / natural(free[c]);
+    }
+    Some(direction)
+}
