@@ -146,7 +146,8 @@ fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Option<Vec<f64
     let natural = |j: usize| if units[j] == Unit::Rad { reach } else { 1.0 };
     let base = problem.base_parameters();
     let columns: Vec<usize> = (0..free.len()).filter(|&c| !base.contains(&free[c])).collect();
-    let mut a = DMatrix::zeros(3 * POSTURES, columns.len());
+    // the turn of the base may help: it changes nothing either
+    let mut a = DMatrix::zeros(3 * POSTURES, columns.len() + 1);
     let mut b = DVector::zeros(3 * POSTURES);
     for row in 0..POSTURES {
         // any postures do that are unlike each other: multiples of an irrational part of a turn
@@ -157,6 +158,8 @@ fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Option<Vec<f64
             let moved = jacobian.column(free[c]) / natural(free[c]);
             a.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&moved);
         }
+        let turn = jacobian.column(0) / natural(0);
+        a.fixed_view_mut::<3, 1>(3 * row, columns.len()).copy_from(&turn);
         b[3 * row + 2] = 1.0;
     }
     let solution = a.clone().svd(true, true).solve(&b, 1e-9).ok()?;
