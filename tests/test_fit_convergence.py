@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from tests.oracle import virtual
 from tests.oracle.core import core_arm, core_problem, nothing_held
-from tests.oracle.published import table_2
+from tests.oracle.observed import Lengths
+from tests.oracle.published import table_2, table_4
 
 from ulna import _core
 
@@ -60,6 +61,22 @@ def test_no_knowledge_of_the_zero_offsets(study):
         assert found.searched_starts >= 1
         if not (found.converged and predicts(truth, fresh, found) < 1e-5):
             lost.append((seed, found.termination, found.rms_mm))
+    assert lost == []
+
+
+@pytest.mark.slow
+def test_no_knowledge_of_the_zero_offsets_with_a_bar():
+    """The same with what the paper measured: 101 places of one bar, with noise. One length is harder than many."""
+    truth = table_4()
+    rng = np.random.default_rng(0)
+    bar = virtual.bars(truth, rng, 101, 443.172, virtual.Touches(5e-6, 0.008))
+    rows = Lengths(bar.q_rad[0::2], bar.q_rad[1::2], np.full(101, 443.172))
+    lost = []
+    for seed in range(20):
+        start = virtual.wrong_start(truth, np.random.default_rng(seed), np.pi, 50.0)
+        found = _core.fit(core_problem(start, [rows]), nothing_held(truth), start="search", seed=seed)
+        if not (found.converged and found.rms_mm < 0.02):
+            lost.append((seed, found.termination, found.rms_mm, found.searched_starts))
     assert lost == []
 
 
