@@ -2,12 +2,14 @@
 
 use crate::arm::Arm;
 use crate::assembly::Assembly;
+use crate::causes::Scene;
 use crate::covariance::covariance;
 use crate::decomposition::Decomposition;
 use crate::error::{Error, Result};
-use crate::identifiability::{Context, Identifiability, Known, analyse};
+use crate::families::pins;
+use crate::identifiability::{Identifiability, Known, Question, analyse};
 use crate::monitor::{Monitor, Unwatched};
-use crate::pins::{Pin, pins};
+use crate::pins::Pin;
 use crate::problem::Problem;
 use crate::residuals::{Unweighted, Weighing};
 pub use crate::solve::{Options, SearchReason, Solution, Start, solve};
@@ -105,11 +107,8 @@ fn identifiability(
 ) -> Identifiability {
     analyse(
         &judged.decomposition,
-        &Context {
-            arm,
-            free,
-            poses: &problem.sample_poses(SAMPLE_POSES),
-            probes_used: &problem.probes_used(),
+        &Question {
+            scene: Scene { arm, free, poses: &problem.sample_poses(SAMPLE_POSES), probes_used: &problem.probes_used() },
             start: problem.arm(),
             pins,
             known,

@@ -1,7 +1,6 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
 use crate::arm::{Arm, JointModel};
-use crate::identifiability::Context;
 use crate::kinematics::{jacobian, tip_mm};
 use crate::problem::off_axis_mm;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -58,6 +57,16 @@ impl Because {
     }
 }
 
+/// Where a direction is looked at.
+pub(crate) struct Scene<'a> {
+    pub arm: &'a Arm,
+    /// indices of the free parameters
+    pub free: &'a [usize],
+    /// probe and angles of some of the readings
+    pub poses: &'a [(usize, Vec<f64>)],
+    pub probes_used: &'a [bool],
+}
+
 /// A joint that turned less than this has not been moved, rad.
 const STILL_RAD: f64 = 1e-6;
 /// Axes closer to parallel than this are parallel, rad.
@@ -68,13 +77,13 @@ const ON_AXIS: f64 = 1e-6;
 const EXPLAINED: f64 = 1e-7;
 
 /// Names the cause of a lost direction, looking at what it does to the tip of `arm`.
-pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Because {
+pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
     let takes_part: Vec<usize> =
-        context.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
-    let joints = context.arm.joint_parameter_count();
-    let unused = |&j: &usize| j >= joints && !context.probes_used[(j - joints) / 3];
+        scene.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
+    let joints = scene.arm.joint_parameter_count();
+    let unused = |&j: &usize| j >= joints && !scene.probes_used[(j - joints) / 3];
     if takes_part.iter().all(unused) {
-        let probe = &context.arm.probes()[(takes_part.first().copied().unwrap_or(joints) - joints) / 3].name;
+        let probe = &scene.arm.probes()[(takes_part.first().copied().unwrap_or(joints) - joints) / 3].name;
         return Because {
             cause: Cause::ProbeUnused,
             because: format!("no reading was taken with probe {probe}"),
@@ -83,8 +92,8 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Becaus
             ),
         };
     }
-    let motion = Motion::new(direction, arm, context);
-    if let Some(because) = moves_nothing(&motion, &takes_part, arm, context) {
+    let motion = Motion::new(direction, arm, scene);
+    if let Some(because) = moves_nothing(&motion, &takes_part, arm, scene) {
         return because;
     }
     if motion.explained_by(false) {
@@ -93,7 +102,7 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, context: &Context) -> Becaus
     if motion.explained_by(true) {
         return scale();
     }
-    if let Some(joint) = still_joint(&takes_part, context) {
+    if let Some(joint) = still_joint(&takes_part, scene) {
         return Because {
             cause: Cause::JointStill,
             because: format!("joint {} was never moved in these readings", joint + 1),
@@ -132,17 +141,17 @@ pub(crate) fn scale() -> Because {
     }
 }
 
-fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, context: &Context) -> Option<Because> {
+fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene) -> Option<Because> {
     if motion.size > EXPLAINED * motion.effort {
         return None;
     }
-    let joints = context.arm.joint_parameter_count();
+    let joints = scene.arm.joint_parameter_count();
     let last_link = joints - 4;
     let on_axis = |probe: &crate::arm::Probe| {
         let length = Vector3::from(probe.tip_mm).norm();
         off_axis_mm(probe.tip_mm) <= ON_AXIS * length.max(1.0)
     };
-    let read_on_axis = arm.probes().iter().zip(context.probes_used).all(|(p, used)| !used || on_axis(p));
+    let read_on_axis = arm.probes().iter().zip(scene.probes_used).all(|(p, used)| !used || on_axis(p));
     if takes_part.iter().any(|&j| j >= last_link) && read_on_axis {
         return Some(Because {
             cause: Cause::ProbeOnAxis,
@@ -164,7 +173,7 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, context: &Con
             });
         }
     }
-    still_joint(takes_part, context).map(|joint| Because {
+    still_joint(takes_part, scene).map(|joint| Because {
         cause: Cause::JointStill,
         because: format!("joint {} was never moved in these readings", joint + 1),
         remedy: format!(
@@ -175,15 +184,15 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, context: &Con
 }
 
 /// A joint next to one of these parameters that stands still in all readings.
-fn still_joint(takes_part: &[usize], context: &Context) -> Option<usize> {
-    let joints = context.arm.joint_parameter_count();
+fn still_joint(takes_part: &[usize], scene: &Scene) -> Option<usize> {
+    let joints = scene.arm.joint_parameter_count();
     let range = |i: usize| {
-        let angles = context.poses.iter().map(|(_, q)| q[i]);
+        let angles = scene.poses.iter().map(|(_, q)| q[i]);
         let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), q| (low.min(q), high.max(q)));
         high - low
     };
-    (0..context.arm.encoders()).find(|&i| {
-        let concerns = |&j: &usize| j >= joints && i + 1 == context.arm.encoders() || j / 4 == i || j / 4 + 1 == i;
+    (0..scene.arm.encoders()).find(|&i| {
+        let concerns = |&j: &usize| j >= joints && i + 1 == scene.arm.encoders() || j / 4 == i || j / 4 + 1 == i;
         takes_part.iter().any(concerns) && range(i) < STILL_RAD
     })
 }
@@ -199,12 +208,12 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(direction: &[f64], arm: &Arm, context: &Context) -> Motion {
+    fn new(direction: &[f64], arm: &Arm, scene: &Scene) -> Motion {
         let (mut tips, mut moves, mut effort) = (Vec::new(), Vec::new(), 0.0);
-        for (probe, q_rad) in context.poses {
+        for (probe, q_rad) in scene.poses {
             let jacobian = jacobian(arm, *probe, q_rad);
             let mut moved = Vector3::zeros();
-            for (&j, &weight) in context.free.iter().zip(direction) {
+            for (&j, &weight) in scene.free.iter().zip(direction) {
                 let part: Vector3<f64> = jacobian.column(j) * weight;
                 moved += part;
                 effort += part.norm_squared();

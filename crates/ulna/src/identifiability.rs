@@ -1,7 +1,7 @@
 //! What the readings determine, what they do not, and why.
 
 use crate::arm::{Arm, Unit};
-use crate::causes::{Because, base_frame, explain, scale};
+use crate::causes::{Because, Scene, base_frame, explain, scale};
 use crate::decomposition::Decomposition;
 use crate::pins::{Kind, Pin};
 
@@ -67,13 +67,9 @@ pub struct Identifiability {
 }
 
 /// What the analysis needs to know of the problem.
-pub(crate) struct Context<'a> {
-    pub arm: &'a Arm,
-    pub free: &'a [usize],
-    /// probe and angles of some of the readings
-    pub poses: &'a [(usize, Vec<f64>)],
-    pub probes_used: &'a [bool],
-    /// the arm at the start, where the pinned directions were found
+pub(crate) struct Question<'a> {
+    pub scene: Scene<'a>,
+    /// the arm at the start, where the pinned families were found
     pub start: &'a Arm,
     pub pins: &'a [Pin],
     pub known: Known,
@@ -84,19 +80,19 @@ pub(crate) struct Context<'a> {
 /// Weights smaller than this part of the largest, in units of effect on the readings, are rounding.
 const NEGLIGIBLE_WEIGHT: f64 = 1e-6;
 
-pub(crate) fn analyse(decomposition: &Decomposition, context: &Context) -> Identifiability {
-    let count = context.free.len();
-    let all_names = context.arm.parameter_names();
-    let names: Vec<String> = context.free.iter().map(|&j| all_names[j].clone()).collect();
+pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Identifiability {
+    let count = question.scene.free.len();
+    let all_names = question.scene.arm.parameter_names();
+    let names: Vec<String> = question.scene.free.iter().map(|&j| all_names[j].clone()).collect();
     let (directions, origins): (Vec<_>, Vec<_>) =
-        lost_directions(decomposition, context.pins, count).into_iter().unzip();
+        lost_directions(decomposition, question.pins, count).into_iter().unzip();
     let one = |(direction, origin): (&Vec<f64>, &Origin)| LostDirection {
         combination: combination(direction, &names),
         because: match origin {
             Origin::Scale => scale(),
             Origin::Lift => base_frame(),
-            Origin::Start => explain(direction, context.start, context),
-            Origin::Here => explain(direction, context.arm, context),
+            Origin::Start => explain(direction, question.start, &question.scene),
+            Origin::Here => explain(direction, question.scene.arm, &question.scene),
         },
     };
     let lost: Vec<LostDirection> = directions.iter().zip(&origins).map(one).collect();
@@ -110,7 +106,7 @@ pub(crate) fn analyse(decomposition: &Decomposition, context: &Context) -> Ident
             _ => 0.0,
         },
         in_lost: (0..count).map(|j| directions.iter().any(|d| d[j] != 0.0)).collect(),
-        weak: weak(decomposition, context, &names),
+        weak: weak(decomposition, question, &names),
         lost_directions: directions,
         singular_values,
         lost,
@@ -190,19 +186,19 @@ fn reduce(rows: &mut [Vec<f64>]) {
 }
 
 /// Singular directions along which a parameter's uncertainty exceeds what was known of it before.
-fn weak(decomposition: &Decomposition, context: &Context, names: &[String]) -> Vec<WeakDirection> {
-    let units = context.arm.parameter_units();
+fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) -> Vec<WeakDirection> {
+    let units = question.scene.arm.parameter_units();
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {
-        let factor = context.sigma / decomposition.singular_values[i];
+        let factor = question.sigma / decomposition.singular_values[i];
         let vector = decomposition.vector(i);
-        let mut u = vec![0.0; context.free.len()];
-        let mut times_known = vec![0.0; context.free.len()];
+        let mut u = vec![0.0; question.scene.free.len()];
+        let mut times_known = vec![0.0; question.scene.free.len()];
         for (a, &j) in decomposition.kept.iter().enumerate() {
             u[j] = factor * vector[a] / decomposition.norms[a];
-            let known = match units[context.free[j]] {
-                Unit::Rad => context.known.angle_rad,
-                Unit::Mm => context.known.length_mm,
+            let known = match units[question.scene.free[j]] {
+                Unit::Rad => question.known.angle_rad,
+                Unit::Mm => question.known.length_mm,
             };
             times_known[j] = u[j].abs() / known;
         }
@@ -211,10 +207,10 @@ fn weak(decomposition: &Decomposition, context: &Context, names: &[String]) -> V
             continue;
         }
         let share = |&j: &usize| times_known[j] > 0.05 * times_known[leading];
-        let unit = units[context.free[leading]];
+        let unit = units[question.scene.free[leading]];
         let known = match unit {
-            Unit::Rad => context.known.angle_rad,
-            Unit::Mm => context.known.length_mm,
+            Unit::Rad => question.known.angle_rad,
+            Unit::Mm => question.known.length_mm,
         };
         result.push(WeakDirection {
             combination: (0..u.len()).filter(share).map(|j| (names[j].clone(), u[j] / u[leading])).collect(),

@@ -12,7 +12,7 @@
 //! | [`solver`] | least squares from streamed rows; knows no kinematics | `simd` |
 //! | [`decomposition`], [`covariance`] | singular values and what follows from them; know no kinematics | `solver` |
 //! | [`identifiability`], [`causes`] | what is lost, in parameters and words | `decomposition` |
-//! | [`pins`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
+//! | [`pins`], [`families`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
 //! | [`symmetry`] | twins: parameter sets that describe the same readings | `arm` |
 //! | [`solve`], `search` | the way to the minimum | `assembly`, `solver` |
 //! | [`calibrate`] | the fit and all that is judged of it | everything above |
@@ -57,6 +57,7 @@ pub mod causes;
 pub mod covariance;
 pub mod decomposition;
 pub mod error;
+pub mod families;
 pub mod identifiability;
 pub mod inverse;
 pub mod kinematics;

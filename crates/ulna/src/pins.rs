@@ -2,19 +2,12 @@
 //!
 //! Some are known beforehand: an arm whose readings know no length may grow, an arm whose artefacts stand freely may be
 //! lifted along its first axis. With residuals left, their columns do not vanish (growth makes the residuals grow),
-//! and a fit would follow them: all lengths to zero, if nothing held the size. Others are found at the start, where
-//! a probe on the last axis leaves a family of parameters that describes the same readings.
+//! and a fit would follow them: all lengths to zero, if nothing held the size. Others are found at the start
+//! ([`crate::families`]).
 
 use crate::arm::{JointModel, Unit};
-use crate::assembly::Assembly;
-use crate::decomposition::Decomposition;
-use crate::error::Result;
 use crate::kinematics::jacobian;
-use crate::monitor::Monitor;
 use crate::problem::Problem;
-use crate::solver::LeastSquares;
-use crate::solver::gram::{Gram, smallest_pivot};
-use crate::solver::triangle::Triangle;
 use nalgebra::{DMatrix, DVector};
 
 /// Why a direction is pinned.
@@ -37,7 +30,7 @@ pub struct Pin {
     pub direction: Vec<f64>,
     /// The equation's coefficients, in the unit of a weighted residual per unknown.
     pub(crate) coefficients: Vec<f64>,
-    start: Vec<f64>,
+    pub(crate) start: Vec<f64>,
 }
 
 impl Pin {
@@ -58,59 +51,8 @@ impl Pin {
     }
 }
 
-/// A pivot of the unit-diagonal normal equations below this calls for a look at the singular values.
-const SUSPICIOUS_PIVOT: f64 = 1e-10;
-
-/// The directions that the readings do not determine at some parameters, to be pinned where the problem's own arm has
-/// them; and the normal equations there.
-///
-/// # Errors
-/// [`crate::Error::Interrupted`].
-pub fn pins(problem: &Problem, free: &[usize], parameters: &[f64], monitor: &dyn Monitor) -> Result<(Vec<Pin>, Gram)> {
-    let own = problem.arm().parameters();
-    let start: Vec<f64> = free.iter().map(|&j| own[j]).collect();
-    let here: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
-    let mut assembly = Assembly::new(problem, free, &[], monitor);
-    let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
-    let mut pins = Vec::new();
-    for (kind, direction) in
-        [(Kind::Growth, growth(problem, free, parameters)), (Kind::Lift, lift(problem, free, parameters))]
-    {
-        let Some(direction) = direction else { continue };
-        // orthogonal to the direction when unknowns are measured by what they move
-        let natural = assembly.natural_scale();
-        let size = direction.iter().zip(natural).map(|(d, n)| (d * n).powi(2)).sum::<f64>().sqrt();
-        let coefficient = |(d, n): (&f64, &f64)| d * n * n / size * weights.sqrt();
-        let coefficients = direction.iter().zip(natural).map(coefficient).collect();
-        pins.push(Pin { kind, direction, coefficients, start: start.clone() });
-    }
-    let mut gram = Gram::new(free.len());
-    assembly.rows(&here, true, &mut gram)?;
-    if smallest_pivot(&gram, assembly.natural_scale()) > SUSPICIOUS_PIVOT {
-        return Ok((pins, gram));
-    }
-    let mut triangle = Triangle::new(free.len());
-    assembly.rows(&here, true, &mut triangle)?;
-    let symmetries: Vec<&[f64]> = pins.iter().map(|p| p.direction.as_slice()).collect();
-    let decomposition = Decomposition::new(&triangle, free.len(), assembly.natural_scale(), &symmetries);
-    for vector in decomposition.null_vectors() {
-        let mut pin = Pin {
-            kind: Kind::Family,
-            direction: vec![0.0; free.len()],
-            coefficients: vec![0.0; free.len()],
-            start: start.clone(),
-        };
-        for ((&unknown, norm), v) in decomposition.kept.iter().zip(&decomposition.norms).zip(&vector) {
-            pin.direction[unknown] = v / norm;
-            pin.coefficients[unknown] = v * norm;
-        }
-        pins.push(pin);
-    }
-    Ok((pins, gram))
-}
-
 /// The direction in which all lengths grow, over the unknowns: where no reading knows a length and none is held.
-fn growth(problem: &Problem, free: &[usize], values: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn growth(problem: &Problem, free: &[usize], values: &[f64]) -> Option<Vec<f64>> {
     if !problem.scale_free() || problem.groups().is_empty() {
         return None;
     }
@@ -134,7 +76,7 @@ const POSTURES: usize = 40;
 
 /// The combination of parameters that moves the base along its first axis, where artefacts stand freely and the first
 /// joint has no d of its own to do it (a Hayati joint: the offsets of the next joints do).
-fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Option<Vec<f64>> {
+pub(crate) fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Option<Vec<f64>> {
     if !problem.base_free() || problem.arm().joints()[0].model == JointModel::Dh {
         return None;
     }

@@ -2,9 +2,10 @@
 
 use crate::assembly::Assembly;
 use crate::error::{Error, Result};
+use crate::families::pins;
 use crate::identifiability::Known;
 use crate::monitor::{Monitor, Unwatched};
-use crate::pins::{Kind, Pin, pins};
+use crate::pins::{Kind, Pin};
 use crate::problem::Problem;
 use crate::residuals::Weighing;
 use crate::search::{Plan, Throw, is_zero_offset, poor, search};

@@ -4,9 +4,10 @@ mod common;
 
 use common::{KINDS, any_arm, noises, rng};
 use ulna::assembly::Assembly;
+use ulna::families::pins;
 use ulna::monitor::Unwatched;
 use ulna::numdiff::worst_difference;
-use ulna::pins::{Kind, pins};
+use ulna::pins::Kind;
 use ulna::problem::Problem;
 use ulna::residuals::Weighing;
 use ulna::solver::LeastSquares;

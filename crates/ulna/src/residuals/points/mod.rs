@@ -8,6 +8,8 @@
 
 mod placement;
 mod rows;
+mod tile;
+mod weigh;
 mod whitening;
 
 use super::length::normal;
@@ -242,7 +244,7 @@ impl Readings for Points {
     }
 
     fn weigh(&mut self, model: &Model, noise: Option<&Noise>, how: Weighing) {
-        let full = Whitening::for_noise(self, model, noise);
+        let full = weigh::for_noise(self, model, noise);
         self.whitening = match how {
             Weighing::Full => full,
             Weighing::Even => full.even(self.order.len()),
