@@ -23,6 +23,9 @@ TASKS = {
     "fit_101": "whole fit, 101 lengths",
     "fit_10000": "whole fit, 10,000 lengths",
     "fit_1000000": "whole fit, 1,000,000 lengths",
+    "judged_101": "the same with covariance and what is determined, 101 lengths",
+    "judged_10000": "the same with covariance and what is determined, 10,000 lengths",
+    "judged_1000000": "the same with covariance and what is determined, 1,000,000 lengths",
     "recalibrate": f"{REPEATED_FITS:,} fits of {REPEATED_LENGTHS} lengths, new noise each, one thread",
     "recalibrate_2": f"{REPEATED_FITS:,} fits of {REPEATED_LENGTHS} lengths, new noise each, two threads",
     "peak_1000000_mb": "memory beyond the readings at the peak of the fit to 1,000,000 lengths",
@@ -76,8 +79,12 @@ def measure_functions(
     fit: Callable[[F64, Lengths], F64] | None,
     quick: bool,
     repeat: bool = True,
+    judged: bool = False,
 ) -> Times:
-    """Times of a contender given as functions of (27,) parameters and angles or lengths; repeat: the 1000 fits too."""
+    """Times of a contender given as functions of (27,) parameters and angles or lengths.
+
+    repeat: the 1000 fits too. judged: a fit brings covariance and what is determined along.
+    """
     from benchmarks.peers.numpy_map import tips
 
     times: Times = {}
@@ -98,7 +105,7 @@ def measure_functions(
             check_found(fit(START, data), f"{rows} lengths")
             if rows == FIT_LENGTHS[-1]:
                 times["peak_1000000_mb"] = resident_mb("VmHWM") - before
-            times[f"fit_{rows}"] = best_of(lambda data=data: fit(START, data))  # type: ignore[misc]
+            times[f"{'judged' if judged else 'fit'}_{rows}"] = best_of(lambda data=data: fit(START, data))  # type: ignore[misc]
         if repeat:
             exact = lengths(REPEATED_LENGTHS)
             sets = [noisy(exact, seed) for seed in range(REPEATED_FITS)]
