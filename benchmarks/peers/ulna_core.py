@@ -57,7 +57,8 @@ def contender() -> Contender:
     return Contender(
         "Ulna, core",
         f"ulna {version}",
-        "the Rust core called from Rust; a fit counts everything from the readings in memory to the fitted parameters; "
-        "residuals and derivatives are handed over block by block and never stored; one thread, not pinned; the repeated fits come without uncertainties",
+        "the Rust core called from Rust, one thread, not pinned; a fit counts everything from the readings in memory to "
+        "the fitted parameters; residuals and derivatives are handed over block by block and never stored; the repeated "
+        "fits come without uncertainties",
         measure,
     )
