@@ -50,6 +50,7 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
     let noise = problem.noise().ok_or(Error::NoNoise)?;
     let truth = Model::new(repeat.truth);
     let mut problem = problem.clone();
+    problem.set_arm(based_on(&problem, repeat.truth)?);
     problem.weigh(&repeat.truth.parameters(), Weighing::Even);
     let (pins, _) = pins(&problem, free, &repeat.truth.parameters(), monitor)?;
     let (problem, pins) = (&problem, pins.as_slice());
@@ -81,6 +82,16 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
         Ok(pool) => pool.install(|| (0..repeat.runs).into_par_iter().map(one).collect()),
         Err(_) => (0..repeat.runs).map(one).collect(),
     }
+}
+
+/// The problem's arm with the truth's base: which way the base looks is a matter of choice, and what is left of the
+/// readings' own residuals is told in the truth's.
+fn based_on(problem: &Problem, truth: &Arm) -> Result<Arm> {
+    let (mut parameters, theirs) = (problem.arm().parameters(), truth.parameters());
+    for j in problem.base_parameters() {
+        parameters[j] = theirs[j];
+    }
+    problem.arm().with_parameters(&parameters)
 }
 
 /// One fit from some parameters, weights as they are: all parameters, and how it ended.

@@ -157,7 +157,7 @@ pub struct Writer<'a> {
     pub block: RowBlock,
     /// Scratch of the kernels.
     pub scratch: [Vec<f64>; 2],
-    sink: Option<&'a mut dyn RowSink>,
+    sink: &'a mut dyn RowSink,
     monitor: &'a dyn Monitor,
     rows_since_asked: usize,
 }
@@ -196,7 +196,7 @@ impl<'a> Writer<'a> {
                 residual: 0,
             },
             scratch: std::mem::take(&mut buffers.scratch),
-            sink: Some(sink),
+            sink,
             monitor,
             rows_since_asked: 0,
         }
@@ -223,9 +223,7 @@ impl<'a> Writer<'a> {
     /// Hands the block to the sink.
     pub fn flush(&mut self) -> Result<()> {
         if self.block.rows > 0 {
-            if let Some(sink) = self.sink.as_deref_mut() {
-                sink.fold(&mut self.block);
-            }
+            self.sink.fold(&mut self.block);
             self.rows_since_asked += self.block.rows;
             self.block.rows = 0;
             if self.rows_since_asked >= ROWS_BETWEEN_QUESTIONS {

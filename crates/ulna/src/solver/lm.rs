@@ -80,8 +80,6 @@ impl Default for Options {
 const DAMPING_START: f64 = 1e-3;
 const DAMPING_LEAST: f64 = 1e-12;
 const DAMPING_MOST: f64 = 1e12;
-/// A column's scale may shrink to this part of the largest it has had (Moré 1978 keeps all of it).
-const SCALE_MEMORY: f64 = 1.0;
 
 /// Minimizes from `x`, which holds the best point found at the end.
 ///
@@ -178,11 +176,11 @@ pub fn minimize_from(
     Ok(report)
 }
 
-/// Norm of each column, with memory; 0 for a column that vanished.
+/// Largest norm each column has had (Moré 1978); 0 for a column that vanished.
 fn update_scale(scale: &mut [f64], gram: &Gram, natural: &[f64]) {
     let norms: Vec<f64> = (0..scale.len()).map(|j| gram.at(j, j).sqrt()).collect();
     for ((s, norm), gone) in scale.iter_mut().zip(&norms).zip(vanished(&norms, natural)) {
-        *s = if gone { 0.0 } else { norm.max(SCALE_MEMORY * *s) };
+        *s = if gone { 0.0 } else { norm.max(*s) };
     }
 }
 
