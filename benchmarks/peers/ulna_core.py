@@ -57,8 +57,8 @@ def contender() -> Contender:
     return Contender(
         "Ulna, core",
         f"ulna {version}",
-        "the Rust core called from Rust, one thread, not pinned; a fit counts everything from the readings in memory to "
-        "the fitted parameters; residuals and derivatives are handed over block by block and never stored; the repeated "
+        "the Rust core called from Rust, one thread, not pinned; a fit counts all from the readings in memory to "
+        "the fitted parameters; residuals and derivatives are handed over by blocks and never stored; the repeated "
         "fits come without uncertainties",
         measure,
     )
