@@ -211,7 +211,7 @@ def fit(
     start: str = "given",  # or "search"
     max_iterations: int = 200,
     seed: int = 0,
-    search_starts: int = 400,
+    search_starts: int = 2000,
     known_length_mm: float = 1.0,
     known_angle_rad: float = 0.01,
     progress: Progress | None = None,

@@ -255,7 +255,7 @@ fn watched<T: Send>(
 
 /// Calibrates.
 #[pyfunction]
-#[pyo3(signature = (problem, hold, start="given", max_iterations=200, seed=0, search_starts=400,
+#[pyo3(signature = (problem, hold, start="given", max_iterations=200, seed=0, search_starts=2000,
                     known_length_mm=1.0, known_angle_rad=0.01, progress=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit(

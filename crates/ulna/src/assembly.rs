@@ -69,7 +69,7 @@ impl<'a> Assembly<'a> {
     /// The readings' own equations at `x`, the considered dimensions as further unknowns behind the free ones.
     ///
     /// # Errors
-    /// [`Error::Interrupted`].
+    /// [`crate::Error::Interrupted`].
     pub fn considered_rows(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
         self.stream(x, true, true, sink)
     }

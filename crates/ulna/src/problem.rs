@@ -1,6 +1,6 @@
 //! The one assembly: an arm, readings, and what is free become a least-squares problem.
 
-use crate::arm::{Arm, JointModel};
+use crate::arm::{Arm, JointModel, Unit};
 use crate::error::{Error, Result};
 use crate::residuals::length::{LengthRows, Lengths};
 use crate::residuals::points::{Features, PointRows, Points};
@@ -34,6 +34,7 @@ impl Problem {
     /// # Errors
     /// A count of encoder deviations other than none or one for each encoder, or a negative one.
     pub fn new(arm: Arm, noise: Option<Noise>) -> Result<Problem> {
+        check_size(&arm)?;
         if let Some(noise) = &noise {
             let given = noise.encoder_rad.len();
             if given != 0 && given != arm.encoders() {
@@ -44,11 +45,11 @@ impl Problem {
                 });
             }
             for &value in noise.encoder_rad.iter().chain([&noise.seat_mm]) {
-                if !(value.is_finite() && value >= 0.0) {
+                if !(value == 0.0 || (LEAST_NOISE..=MOST_MM).contains(&value)) {
                     return Err(Error::OutOfRange {
-                        what: "a standard deviation of the noise".into(),
+                        what: "a standard deviation of the noise (rad or mm)".into(),
                         value,
-                        expected: "a number not below zero",
+                        expected: "zero, or a number from 1e-12 to 1e7",
                     });
                 }
             }
@@ -68,11 +69,11 @@ impl Problem {
         self.check_angles("second poses", rows.p_rad, count)?;
         self.check_probes(rows.probe, count)?;
         for &value in rows.length_mm {
-            if !(value.is_finite() && value > 0.0) {
+            if !(1e-6..=MOST_MM).contains(&value) {
                 return Err(Error::OutOfRange {
                     what: format!("a length of artefact {name}, mm,"),
                     value,
-                    expected: "a positive number",
+                    expected: "a number from 1e-6 to 1e7",
                 });
             }
         }
@@ -99,8 +100,12 @@ impl Problem {
             }
         }
         for &value in features.coordinates_mm.iter().flatten() {
-            if !value.is_finite() {
-                return Err(Error::NotFinite { what: format!("a coordinate of artefact {}", features.name), value });
+            if value.is_nan() || value.abs() > MOST_MM {
+                return Err(Error::OutOfRange {
+                    what: format!("a coordinate of artefact {}, mm,", features.name),
+                    value,
+                    expected: "a number from -1e7 to 1e7",
+                });
             }
         }
         if rows.placement.len() != count {
@@ -239,8 +244,12 @@ impl Problem {
 
     /// Longest reach with any probe, mm.
     pub fn reach_mm(&self) -> f64 {
-        let probes = 0..self.arm.probes().len();
-        probes.map(|p| self.arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max)
+        longest_reach_mm(&self.arm)
+    }
+
+    /// The same at other parameters.
+    pub fn reach_at_mm(&self, parameters: &[f64]) -> f64 {
+        self.arm.with_parameters(parameters).map_or(f64::MAX, |arm| longest_reach_mm(&arm))
     }
 
     /// Residuals of every group at some parameters, and the root mean square of a reading's residual, mm.
@@ -271,6 +280,30 @@ impl Problem {
             group.weigh(&model, self.noise.as_ref(), how);
         }
     }
+}
+
+fn longest_reach_mm(arm: &Arm) -> f64 {
+    (0..arm.probes().len()).map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// What no arm has: a link of ten kilometres, an angle of a thousand turns.
+const MOST_MM: f64 = 1e7;
+const MOST_RAD: f64 = 1e4;
+/// What no noise is: less than this is a slip, and its weights would not fit into a number.
+const LEAST_NOISE: f64 = 1e-12;
+
+fn check_size(arm: &Arm) -> Result<()> {
+    let units = arm.parameter_units();
+    for ((name, value), unit) in arm.parameter_names().into_iter().zip(arm.parameters()).zip(units) {
+        let (most, expected) = match unit {
+            Unit::Mm => (MOST_MM, "at most 10 km (1e7 mm)"),
+            Unit::Rad => (MOST_RAD, "at most 10000 rad"),
+        };
+        if value.abs() > most {
+            return Err(Error::OutOfRange { what: format!("{name}, {},", unit.as_str()), value, expected });
+        }
+    }
+    Ok(())
 }
 
 fn check_uncertainty(name: &str, u_mm: f64) -> Result<()> {

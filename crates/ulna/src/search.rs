@@ -3,6 +3,7 @@
 //! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
 //! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
 
+use crate::arm::Unit;
 use crate::assembly::Assembly;
 use crate::error::{Error, Result};
 use crate::kinematics::encoder_jacobian;
@@ -22,8 +23,6 @@ pub(crate) struct Searched {
     pub x: Vec<f64>,
     /// Their cost on the thinned readings.
     pub cost: f64,
-    /// Cost of the point the search set out from, refitted, on the same readings.
-    pub cost_given: f64,
     /// How many starts were tried.
     pub starts: usize,
 }
@@ -62,19 +61,44 @@ pub(crate) fn search(
     monitor: &dyn Monitor,
 ) -> Result<Searched> {
     let thin = problem.thinned(READINGS);
-    let mut assembly = Assembly::new(&thin, free, pins, monitor);
+    let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
+    if !sizeless {
+        return search_over(&thin, free, pins, given, plan, monitor);
+    }
+    // with no length known, most starts end in arms that shrink to a point: the links keep theirs while zero offsets are sought
+    let units = problem.arm().parameter_units();
+    let joints = problem.arm().joint_parameter_count();
+    let sought = |k: &usize| units[free[*k]] == Unit::Rad || free[*k] >= joints;
+    let part: Vec<usize> = (0..free.len()).filter(sought).collect();
+    let part_free: Vec<usize> = part.iter().map(|&k| free[k]).collect();
+    let part_given: Vec<f64> = part.iter().map(|&k| given[k]).collect();
+    let found = search_over(&thin, &part_free, &[], &part_given, plan, monitor)?;
+    let mut x = given.to_vec();
+    for (&k, value) in part.iter().zip(found.x) {
+        x[k] = value;
+    }
+    Ok(Searched { x, ..found })
+}
+
+/// The search over some parameters of thinned readings.
+fn search_over(
+    thin: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    given: &[f64],
+    plan: Plan,
+    monitor: &dyn Monitor,
+) -> Result<Searched> {
+    let mut assembly = Assembly::new(thin, free, pins, monitor);
     let options = Options { max_iterations: ITERATIONS, ..Options::default() };
     let quiet = Quiet(monitor);
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
     let mut x = given.to_vec();
     let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
-    let mut best = Searched { x, cost: cost_given, cost_given, starts: 1 };
-    let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
-    let mobility_given = mobility(&thin, free, given);
-    if sizeless && mobility(&thin, free, &best.x) < COLLAPSED * mobility_given {
-        best.cost = f64::INFINITY;
-    }
+    let mut best = Searched { x, cost: cost_given, starts: 1 };
     let mut agreeing = 1;
+    let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
+    let start = thin.arm().parameters();
     for attempt in 0..plan.most_starts {
         if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
             return Err(Error::Interrupted);
@@ -85,15 +109,12 @@ pub(crate) fn search(
         };
         let mut x = given.to_vec();
         for (value, &j) in x.iter_mut().zip(free) {
-            if is_zero_offset(problem, j) {
+            if is_zero_offset(thin, j) {
                 *value += rng.random_range(-width..width);
             }
         }
         let report = minimize(&mut assembly, &mut x, &options, &quiet)?;
         best.starts += 1;
-        if sizeless && mobility(&thin, free, &x) < COLLAPSED * mobility_given {
-            continue;
-        }
         let tie = 1e-6 * best.cost + assembly.negligible_cost();
         if report.cost < best.cost - tie {
             best.x = x;
@@ -103,9 +124,8 @@ pub(crate) fn search(
             agreeing += 1;
         }
         // the noise as stated, or rounding, explains it; or several starts found the same
-        let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
         let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
-        let enough = if poor(&thin, best.cost) { AGREEING_POOR } else { AGREEING };
+        let enough = if poor(thin, &start, best.cost) { AGREEING_POOR } else { AGREEING };
         if explained || best.cost <= assembly.negligible_cost() || agreeing >= enough {
             break;
         }
@@ -113,17 +133,18 @@ pub(crate) fn search(
     Ok(best)
 }
 
-/// An arm whose joints move its tip by less than this part of what they did before has collapsed: readings of seats that
+/// Whether the joints of an arm hardly move its tip any more, compared with the problem's own arm: readings of seats that
 /// know no length are met exactly by a tip that nothing moves.
+pub(crate) fn collapsed(problem: &Problem, parameters: &[f64]) -> bool {
+    mobility(problem, parameters) < COLLAPSED * mobility(problem, &problem.arm().parameters())
+}
+
+/// An arm whose joints move its tip by less than this part of what they did before has collapsed.
 const COLLAPSED: f64 = 0.3;
 
 /// How far the tip moves with its joints, mm/rad, root mean square over some of the readings.
-fn mobility(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
-    let mut parameters = problem.arm().parameters();
-    for (&j, &value) in free.iter().zip(x) {
-        parameters[j] = value;
-    }
-    let Ok(arm) = problem.arm().with_parameters(&parameters) else {
+fn mobility(problem: &Problem, parameters: &[f64]) -> f64 {
+    let Ok(arm) = problem.arm().with_parameters(parameters) else {
         return 0.0;
     };
     let poses = problem.sample_poses(40);
@@ -136,13 +157,19 @@ pub(crate) fn is_zero_offset(problem: &Problem, parameter: usize) -> bool {
     parameter < problem.arm().joint_parameter_count() && parameter.is_multiple_of(4)
 }
 
-/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves.
+/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves; nor are residuals a hundred times
+/// the stated noise.
 const POOR: f64 = 1e-3;
+const POOR_NOISE: f64 = 100.0;
 
-/// Whether a cost is beyond what any calibrated arm leaves.
-pub(crate) fn poor(problem: &Problem, cost: f64) -> bool {
+/// Whether a cost is beyond what any calibrated arm leaves. The reach is the shorter of that at the start and that at
+/// these parameters: either may be absurd.
+pub(crate) fn poor(problem: &Problem, parameters: &[f64], cost: f64) -> bool {
     let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
-    (cost / weights).sqrt() > POOR * problem.reach_mm()
+    let reach = problem.reach_at_mm(parameters).min(problem.reach_mm());
+    let dof = problem.equations().saturating_sub(problem.placement_unknowns()).max(1);
+    let beyond_noise = problem.noise().is_some() && cost > POOR_NOISE.powi(2) * dof as f64;
+    beyond_noise || (cost / weights).sqrt() > POOR * reach
 }
 
 /// Lets a fit be interrupted without reporting each of its steps.

@@ -8,7 +8,7 @@ use crate::monitor::{Monitor, Unwatched};
 use crate::pins::{Kind, Pin};
 use crate::problem::Problem;
 use crate::residuals::Weighing;
-use crate::search::{Plan, Throw, is_zero_offset, poor, search};
+use crate::search::{Plan, Throw, collapsed, is_zero_offset, poor, search};
 use crate::solver::LeastSquares;
 use crate::solver::gram::{Cost, Gram};
 use crate::solver::lm::{self, Report, Termination, minimize, minimize_from};
@@ -40,7 +40,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { start: Start::Given, max_iterations: 200, seed: 0, search_starts: 400, known: Known::default() }
+        Options { start: Start::Given, max_iterations: 200, seed: 0, search_starts: 2000, known: Known::default() }
     }
 }
 
@@ -106,7 +106,7 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         way.first_descent(gram)?
     };
     way.release(&mut report)?;
-    if search_reason.is_none() && can_search && poor(way.problem, report.cost) {
+    if search_reason.is_none() && can_search && poor(way.problem, &way.parameters(), report.cost) {
         let found = search(way.problem, free, &way.pins, &given, plan(Throw::Widening), monitor)?;
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::PoorMinimum));
         let first = std::mem::replace(&mut way.x, found.x);
@@ -118,7 +118,9 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         }
     }
     way.reweigh(&mut report)?;
-    if search_reason.is_some() && poor(way.problem, report.cost) {
+    let sizeless = way.pins.iter().any(|p| p.kind == Kind::Growth);
+    let collapsed = sizeless && collapsed(way.problem, &way.parameters());
+    if collapsed || search_reason.is_some() && poor(way.problem, &way.parameters(), report.cost) {
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;

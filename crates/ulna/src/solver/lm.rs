@@ -20,7 +20,8 @@ pub enum Termination {
     NoProgress,
     /// The iterations ran out.
     MaxIterations,
-    /// Converged, but to residuals far beyond what the noise or the size of the arm explains, and a search found nothing better.
+    /// Ended at residuals far beyond what the size of the arm explains, and a search found nothing better; or, with
+    /// readings that know no length, at an arm whose joints hardly move its tip.
     PoorMinimum,
 }
 
@@ -80,6 +81,9 @@ impl Default for Options {
 const DAMPING_START: f64 = 1e-3;
 const DAMPING_LEAST: f64 = 1e-12;
 const DAMPING_MOST: f64 = 1e12;
+/// Where only heavily damped steps are left, the minimum counts as reached if a full step promises less than this part
+/// of the cost.
+const STUCK_TOLERANCE: f64 = 1e-6;
 
 /// Minimizes from `x`, which holds the best point found at the end.
 ///
@@ -137,7 +141,10 @@ pub fn minimize_from(
         update_scale(&mut scale, &here, problem.natural_scale());
         let predicted = step.solve(&here, &scale, damping);
         if predicted <= options.cost_tolerance * here.cost() {
-            report.termination = Termination::ConvergedCost;
+            // a step that damping has shortened to nothing says nothing; what a full one would gain does
+            let full = if damping <= DAMPING_START { predicted } else { step.solve(&here, &scale, DAMPING_LEAST) };
+            let reached = full <= STUCK_TOLERANCE * here.cost();
+            report.termination = if reached { Termination::ConvergedCost } else { Termination::NoProgress };
             break;
         }
         let mut largest_move = 0.0_f64;
