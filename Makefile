@@ -46,10 +46,10 @@ prerequisites:
 
 .PHONY: lint
 lint: build ## formatting and lint, Rust and Python; changes nothing
-	cargo fmt --all --check
-	cargo clippy --locked --workspace --all-targets -- -D warnings
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets -- -D warnings
 
 .PHONY: format
 format: build ## put Rust and Python sources into the house format
