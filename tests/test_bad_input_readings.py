@@ -46,6 +46,7 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
         BARS.replace(",", ";").replace("q1;q2;q3;placement;feature", "q1,q2,q3,placement,feature"),
         ("row 1 (line 2", "1 cells", "separated by semicolons?"),
     ),
+    "old line ends": (BARS.replace("\n", "\r").encode(), ("lone carriage return", "Unix or Windows line ends")),
     "latin header": (BARS.replace("feature", "länge").encode("latin-1"), ("line 1 is not UTF-8", "Save it as UTF-8")),
     "open quote": (
         BARS.replace(",A", ',"A', 1) + BARS.split("\n", 1)[1] * 700,

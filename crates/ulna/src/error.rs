@@ -39,7 +39,7 @@ pub enum Error {
         count: usize,
     },
     /// A standard deviation or a length that must be positive (or not negative) is not.
-    #[error("{what} is {value}; {expected} was expected")]
+    #[error("{what} is {value:?}; {expected} was expected")]
     OutOfRange {
         /// Which quantity.
         what: String,

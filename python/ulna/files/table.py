@@ -49,6 +49,11 @@ def read_header(path: Path, what: str = WHAT) -> Header:
         line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
     except UnicodeDecodeError:
         raise UlnaInputError(f"{path}: line 1 is not UTF-8 text; expected {what}. Save it as UTF-8.") from None
+    if "\r" in line:
+        raise UlnaInputError(
+            f"{path}: the lines end with a lone carriage return; expected a line feed (or both). "
+            "Save the table again with Unix or Windows line ends."
+        )
     for separator, name in ((";", "semicolons"), ("\t", "tabs")):
         if separator in line and "," not in line:
             raise UlnaInputError(
