@@ -140,6 +140,10 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
         Freedom { free: &is_free, base_free: problem.base_free(), mirror_free: problem.mirror_free() },
     );
     solution.parameters = folded.parameters;
+    if !folded.steps.is_empty() {
+        // a mirror image has its weights mirrored too
+        problem.weigh(&solution.parameters, Weighing::Full);
+    }
     let judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
     for (unknown, &j) in free.iter().enumerate() {
         if !judged.decomposition.kept.contains(&unknown) {
