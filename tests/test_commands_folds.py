@@ -68,6 +68,24 @@ def test_folds_of_readings_where_no_placement_is_fitted_or_there_are_few() -> No
     assert_each_reading_once(found)
 
 
+@pytest.mark.parametrize("count", [1, 4, 6])
+def test_more_folds_than_placements_are_refused_not_dealt_from_single_readings(count: int) -> None:
+    # a bar that loses one end has no length any more: nothing would be judged in most folds
+    bars = study(group(BAR, ["p", "p", "r", "r", "s", "s"]))
+    with pytest.raises(UlnaInputError, match=rf"{count} folds of 3 placements; expected a number from 2 to 3\."):
+        folds(bars, count)
+    assert [fold.rows for fold in folds(bars, 3)[1]] == [2, 2, 2]
+
+
+def test_one_placement_of_a_bar_is_not_torn_apart() -> None:
+    bar = study(group(BAR, ["p"] * 8))
+    with pytest.raises(UlnaInputError, match=r"2 folds of 1 placement; .*Measure more placements"):
+        folds(bar, 2)
+    with pytest.raises(UlnaInputError, match="all of one placement") as caught:
+        folds(bar, "placement")
+    assert "Or deal" not in str(caught.value)
+
+
 def test_folds_follow_the_seed() -> None:
     cone = group(CONE, ["1"] * 30)
     first, again, other = (folds(study(cone, seed=seed), 3)[1][0].masks[0] for seed in (1, 1, 2))

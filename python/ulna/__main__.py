@@ -1,5 +1,29 @@
-"""`python -m ulna`: the same as the command `ulna`."""
+"""`python -m ulna` and the command `ulna`: from here on Ctrl-C is answered in one line."""
 
-from ulna.cli import main
+from __future__ import annotations
 
-main()
+import os
+import signal
+import sys
+from typing import Any
+
+
+def main() -> None:
+    """The console script. While the program is still being imported there is nothing to take away."""
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.default_int_handler:  # not where the shell said to ignore it
+        signal.signal(signal.SIGINT, _leave)
+    from ulna.cli import main as run
+
+    signal.signal(signal.SIGINT, before)
+    run()
+
+
+def _leave(_signal: int, _frame: Any) -> None:
+    # an exception could be caught by whatever is being imported, or end in its traceback
+    os.write(sys.__stderr__.fileno() if sys.__stderr__ else 2, b"\nInterrupted. Nothing was written.\n")
+    os._exit(130)
+
+
+if __name__ == "__main__":
+    main()

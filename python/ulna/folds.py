@@ -45,8 +45,9 @@ def folds(study: Study, by: str | int) -> tuple[str, list[Fold]]:
             f"cross-validation by {by!r}; expected 'placement', 'artefact' or a number of folds such as 10."
         )
     if len(found) < 2:
-        rows = sum(len(readings) for readings in study.readings)
-        more = f" Or deal the readings into folds: by a number from 2 to {rows}, such as 10." if rows >= 2 else ""
+        most = _dealt_units(study)[1]
+        more = f" Or deal the readings into folds: by a number from 2 to {most}, such as {min(most, 10)}."
+        more = more if most >= 2 else ""
         raise UlnaInputError(
             f"{study.label}: the readings are all of one {by}, so leaving it out leaves nothing to fit; expected two "
             f"or more. Name each standing of an artefact in the column 'placement', or measure more of them.{more}"
@@ -67,23 +68,39 @@ def _by_placement(study: Study) -> list[Fold]:
 
 
 def _dealt(study: Study, count: int) -> tuple[str, list[Fold]]:
-    """Random folds of near-equal size. What stands together stays together, so that nothing of a placement that is
-    judged was fitted, where there are placements enough for that; else single readings are dealt."""
-    units, unit_count = _standings(study)
-    what = "placements"
+    """Random folds of near-equal size."""
+    units, unit_count, what = _dealt_units(study)
     if not 2 <= count <= unit_count:
-        units, unit_count = _single_readings(study)
-        what = "readings"
-    if not 2 <= count <= unit_count:
-        raise UlnaInputError(
-            f"{study.label}: {count} folds of {unit_count} readings; expected a number from 2 to {unit_count}."
-        )
+        kind = what if unit_count != 1 else what.removesuffix("s")
+        if unit_count < 2:
+            remedy = "expected two or more to deal. Measure more placements."
+        else:
+            remedy = f"expected a number from 2 to {unit_count}."
+        if what == "placements" and unit_count >= 2:
+            remedy += (
+                f" What stands together is left out together. Ask for at most {unit_count} folds, or measure more "
+                "placements."
+            )
+        raise UlnaInputError(f"{study.label}: {count} folds of {unit_count} {kind}; {remedy}")
     dealt = np.arange(unit_count) % count
     np.random.default_rng(study.fit.seed).shuffle(dealt)
     width = len(str(count))
     return f"{count} folds of {what}", [
         Fold(f"fold {fold + 1:0{width}}", [dealt[unit] == fold for unit in units]) for fold in range(count)
     ]
+
+
+def _dealt_units(study: Study) -> tuple[list[I64], int, str]:
+    """What is dealt: the unit of each row, how many units, and what they are called.
+
+    What stands together stays together, so that nothing of a placement that is judged was fitted. Length rows, and
+    points in the arm's frame, stand alone. Where all readings are of one placement its single readings are dealt,
+    except of a bar: with single readings left out it would lose an end, and with it the length that is judged.
+    """
+    units, count = _standings(study)
+    if count >= 2 or any(readings.artefact.kind == "bar" for readings in study.readings):
+        return units, count, "placements"
+    return *_single_readings(study), "readings"
 
 
 def _standings(study: Study) -> tuple[list[I64], int]:

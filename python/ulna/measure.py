@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.files.output import new_file
+from ulna.files.output import new_file, refuse_inputs
 from ulna.measuring import MeasureJob
 from ulna.model import Arm
 
@@ -73,6 +73,7 @@ def measure(
         table = pl.concat(list(job.frames(progress)))
     else:
         path = Path(out)
+        refuse_inputs([path], [Path(readings), *([] if isinstance(arm, Arm) else [Path(arm)])])
         with new_file(path, force=force) as staged:
             write = _write_parquet if path.suffix.lower() == ".parquet" else _write_csv
             write(job.frames(progress), staged)

@@ -22,13 +22,15 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
     """
     import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output
+    from ulna.files.output import check_output, refuse_inputs
     from ulna.report.calibration import calibration_report
     from ulna.result import FILES
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
     loaded = ulna.Study.load(study)
+    if out is not None:
+        refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     with output.progress_bar() as progress:
         result = ulna.calibrate(loaded, progress)
     if out is not None:

@@ -30,12 +30,14 @@ def cross_validate(
     import ulna
     from ulna.cli import output
     from ulna.cross_validate import FILES
-    from ulna.files.output import check_output
+    from ulna.files.output import check_output, refuse_inputs
     from ulna.report.cross_validation import cross_validation_report
 
     if out is not None:
         check_output(out, FILES, force)
     loaded = ulna.Study.load(study)
+    if out is not None:
+        refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     group: str | int = int(by) if by.isdecimal() else by
     with output.progress_bar() as progress:
         found = ulna.cross_validate(loaded, group, progress)

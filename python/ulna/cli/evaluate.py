@@ -18,13 +18,15 @@ def evaluate(arm: ArmFile, study: Study, out: OutFolder = None, force: Force = F
     import ulna
     from ulna.cli import output
     from ulna.evaluate import FILES
-    from ulna.files.output import check_output
+    from ulna.files.output import check_output, refuse_inputs
     from ulna.report.evaluation import evaluation_report
 
     if out is not None:
         check_output(out, FILES, force)
     judged = ulna.Arm.load(arm)
     loaded = ulna.Study.load(study)
+    if out is not None:
+        refuse_inputs((out / name for name in FILES), [arm, *(file.path for file in loaded.files)])
     with output.progress_bar() as progress:
         evaluation = ulna.evaluate(judged, loaded, progress)
     if out is not None:

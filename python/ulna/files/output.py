@@ -6,7 +6,7 @@ import os
 import secrets
 import shutil
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -36,6 +36,23 @@ def check_output(folder: Path, names: Sequence[str], force: bool = False) -> Non
             raise UlnaInputError(
                 f"{folder / name}: exists already and is not overwritten. Name another folder with -o, or give --force."
             )
+
+
+def refuse_inputs(targets: Iterable[Path], inputs: Iterable[Path]) -> None:
+    """No output may take the place of a file that this run reads, not even where overwriting was allowed: its meaning,
+    or the readings themselves, would be lost. The same file by another name counts. Raises UlnaInputError."""
+    known = list(inputs)
+    for target in targets:
+        for source in known:
+            try:
+                same = target.samefile(source)
+            except (OSError, ValueError):
+                continue  # one of them is not there: nothing to lose
+            if same:
+                raise UlnaInputError(
+                    f"{target}: is an input of this run and is never overwritten, also with --force. Name another "
+                    "place with -o."
+                )
 
 
 @contextmanager
