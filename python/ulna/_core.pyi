@@ -224,6 +224,10 @@ def identify(
 ) -> Identifiability:
     """What these readings can and cannot determine at the problem's own arm, without fitting."""
 
+def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:
+    """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how the fitted parameters follow held ones
+    that are themselves uncertain. `held` (h,): indices of held parameters. Units as the parameters'."""
+
 def recalibrate(
     problem: Problem,
     hold: Bool,

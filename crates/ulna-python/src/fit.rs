@@ -1,7 +1,7 @@
 //! `ulna._core.fit`, `identify`, `recalibrate` and what they return.
 
 use crate::arm::Arm;
-use crate::arrays::{array1, array2, slice};
+use crate::arrays::{array1, array2, indices, slice};
 use crate::errors::{UlnaError, raise};
 use crate::problem::Problem;
 use crate::watch::Watch;
@@ -305,6 +305,28 @@ pub fn identify(
     let inner = &mut problem.inner;
     let inner = watched(py, None, |watch| calibrate::identify(inner, &free, known, watch))?;
     Ok(Identifiability { inner })
+}
+
+/// How the free parameters follow held ones.
+#[pyfunction]
+pub fn held_sensitivity<'py>(
+    py: Python<'py>,
+    problem: PyRef<'_, Problem>,
+    hold: PyReadonlyArray1<'_, bool>,
+    fitted: &Fitted,
+    held: PyReadonlyArray1<'_, i64>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let free = free(&problem, &hold)?;
+    let held = indices(&held, "parameter")?;
+    let count = problem.inner.arm().parameter_count();
+    if let Some(wrong) = held.iter().find(|&&h| h >= count || free.contains(&h)) {
+        return Err(UlnaError::new_err(format!("parameter {wrong} is not held")));
+    }
+    let (inner, solution) = (&problem.inner, &fitted.inner.solution);
+    let sensitivity = watched(py, None, |watch| {
+        calibrate::held_sensitivity(inner, &free, &solution.pins, &solution.parameters, &held, watch)
+    })?;
+    array2(py, sensitivity, held.len())
 }
 
 /// Calibrations repeated on new noise.

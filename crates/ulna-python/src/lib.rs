@@ -26,6 +26,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(simd_level, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::identify, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::held_sensitivity, module)?)?;
     module.add_function(wrap_pyfunction!(fit::recalibrate, module)?)?;
     Ok(())
 }

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::families::pins;
 use crate::identifiability::{Identifiability, Known, Question, analyse};
 use crate::monitor::{Monitor, Unwatched};
-use crate::pins::Pin;
+use crate::pins::{Kind, Pin, Symmetry};
 use crate::problem::Problem;
 use crate::residuals::{Unweighted, Weighing};
 pub use crate::solve::{Options, SearchReason, Solution, Start, solve};
@@ -61,6 +61,8 @@ const SAMPLE_POSES: usize = 60;
 pub(crate) struct Judged {
     pub triangle: Triangle,
     pub decomposition: Decomposition,
+    /// what was taken out
+    pub symmetries: Vec<Symmetry>,
 }
 
 pub(crate) fn judge(
@@ -74,10 +76,61 @@ pub(crate) fn judge(
     let mut assembly = Assembly::new(problem, free, pins, monitor);
     let mut triangle = Triangle::new(free.len() + assembly.considered());
     assembly.considered_rows(&x, &mut triangle)?;
-    let symmetries: Vec<Vec<f64>> = pins.iter().map(|p| p.direction_at(problem, free, parameters)).collect();
-    let symmetries: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
-    let decomposition = Decomposition::new(&triangle, free.len(), assembly.natural_scale(), &symmetries);
-    Ok(Judged { triangle, decomposition })
+    let (decomposition, symmetries) = decompose(problem, free, pins, parameters, &triangle, assembly.natural_scale());
+    Ok(Judged { triangle, decomposition, symmetries })
+}
+
+/// The decomposition with everything taken out that is pinned, as it is at these parameters: a symmetry goes with the
+/// arm, and of a family that the start could not tell apart, what the readings see least here.
+fn decompose(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    parameters: &[f64],
+    triangle: &Triangle,
+    natural_scale: &[f64],
+) -> (Decomposition, Vec<Symmetry>) {
+    let lasting = pins.iter().filter(|p| p.kind != Kind::Family);
+    let mut symmetries: Vec<Symmetry> = lasting.map(|p| (p.kind, p.direction_at(problem, free, parameters))).collect();
+    let with = |symmetries: &[Symmetry]| {
+        let slices: Vec<&[f64]> = symmetries.iter().map(|(_, direction)| direction.as_slice()).collect();
+        Decomposition::new(triangle, free.len(), natural_scale, &slices)
+    };
+    let seen = with(&symmetries);
+    let families = pins.len() - symmetries.len();
+    if families == 0 {
+        return (seen, symmetries);
+    }
+    symmetries.extend(seen.least_seen(families).iter().map(|v| (Kind::Family, seen.physical(v))));
+    (with(&symmetries), symmetries)
+}
+
+/// How the free parameters follow held ones, `-J⁺ ∂r/∂held`: row-major, one row a free parameter.
+///
+/// # Errors
+/// Interrupted.
+pub fn held_sensitivity(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    parameters: &[f64],
+    held: &[usize],
+    monitor: &dyn Monitor,
+) -> Result<Vec<f64>> {
+    let all: Vec<usize> = free.iter().chain(held).copied().collect();
+    let x: Vec<f64> = all.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, &all, &[], monitor);
+    let mut triangle = Triangle::new(all.len());
+    assembly.rows(&x, true, &mut triangle)?;
+    let natural_scale = &assembly.natural_scale()[..free.len()];
+    let (decomposition, _) = decompose(problem, free, pins, parameters, &triangle, natural_scale);
+    let mut sensitivity = vec![0.0; free.len() * held.len()];
+    for k in 0..held.len() {
+        for (j, value) in decomposition.pseudo_solve(&triangle, free.len() + k).into_iter().enumerate() {
+            sensitivity[j * held.len() + k] = -value;
+        }
+    }
+    Ok(sensitivity)
 }
 
 /// What the readings can and cannot determine at the problem's own arm, without fitting.
@@ -111,6 +164,7 @@ fn identifiability(
             scene: Scene { arm, free, poses: &problem.sample_poses(SAMPLE_POSES), probes_used: &problem.probes_used() },
             start: problem.arm(),
             pins,
+            symmetries: &judged.symmetries,
             known,
             sigma,
         },

@@ -77,6 +77,24 @@ impl Decomposition {
         orthonormal(null, &self.known)
     }
 
+    /// An orthonormal basis of the `count` directions that the readings see least beside the known symmetries.
+    pub fn least_seen(&self, count: usize) -> Vec<Vec<f64>> {
+        let first = self.kept.len().saturating_sub(count + self.known.len());
+        let last = (first..self.kept.len()).rev().map(|i| self.vector(i)).collect();
+        let mut least = orthonormal(last, &self.known);
+        least.truncate(count);
+        least
+    }
+
+    /// A vector of scaled coordinates over the kept columns as physical ones over all unknowns.
+    pub fn physical(&self, scaled: &[f64]) -> Vec<f64> {
+        let mut direction = vec![0.0; self.unknowns];
+        for ((&unknown, norm), v) in self.kept.iter().zip(&self.norms).zip(scaled) {
+            direction[unknown] = v / norm;
+        }
+        direction
+    }
+
     /// Singular vector `i` in scaled coordinates, over the kept columns.
     pub fn vector(&self, i: usize) -> Vec<f64> {
         (0..self.kept.len()).map(|j| self.v[(j, i)]).collect()

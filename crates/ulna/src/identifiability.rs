@@ -3,7 +3,7 @@
 use crate::arm::{Arm, Unit};
 use crate::causes::{Because, Scene, base_frame, explain, scale};
 use crate::decomposition::Decomposition;
-use crate::pins::{Kind, Pin};
+use crate::pins::{Kind, Pin, Symmetry};
 
 /// A direction that no reading sees.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +72,8 @@ pub(crate) struct Question<'a> {
     /// the arm at the start, where the pinned families were found
     pub start: &'a Arm,
     pub pins: &'a [Pin],
+    /// the same directions at the arm in question
+    pub symmetries: &'a [Symmetry],
     pub known: Known,
     /// standard deviation of a whitened residual
     pub sigma: f64,
@@ -84,14 +86,13 @@ pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Ide
     let count = question.scene.free.len();
     let all_names = question.scene.arm.parameter_names();
     let names: Vec<String> = question.scene.free.iter().map(|&j| all_names[j].clone()).collect();
-    let (directions, origins): (Vec<_>, Vec<_>) =
-        lost_directions(decomposition, question.pins, count).into_iter().unzip();
+    let (directions, origins): (Vec<_>, Vec<_>) = lost_directions(decomposition, question, count).into_iter().unzip();
     let one = |(direction, origin): (&Vec<f64>, &Origin)| LostDirection {
         combination: combination(direction, &names),
         because: match origin {
             Origin::Scale => scale(),
             Origin::Lift => base_frame(),
-            Origin::Start => explain(direction, question.start, &question.scene),
+            Origin::Start(there) => explain(there, question.start, &question.scene),
             Origin::Here => explain(direction, question.scene.arm, &question.scene),
         },
     };
@@ -120,47 +121,54 @@ fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
 }
 
 /// Where a lost direction was found.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Origin {
     /// known beforehand: no reading knows a length
     Scale,
     /// known beforehand: nothing fixes the base along its first axis
     Lift,
-    /// at the start, and pinned there
-    Start,
+    /// at the start, where it was this direction, and pinned there
+    Start(Vec<f64>),
     /// at the arm in question
     Here,
 }
 
 /// A sparse basis of what is lost, physical units over all unknowns: vanished columns one by one, growth, and the rest
 /// reduced to as few parameters as possible.
-fn lost_directions(decomposition: &Decomposition, pins: &[Pin], count: usize) -> Vec<(Vec<f64>, Origin)> {
+fn lost_directions(decomposition: &Decomposition, question: &Question, count: usize) -> Vec<(Vec<f64>, Origin)> {
     let (kept, norms) = (&decomposition.kept, &decomposition.norms);
-    let mut directions = Vec::new();
+    let mut lost = Vec::new();
     for j in (0..count).filter(|j| !kept.contains(j)) {
         let mut direction = vec![0.0; count];
         direction[j] = 1.0;
-        directions.push((direction, Origin::Here));
+        lost.push((direction, Origin::Here));
     }
-    let scaled = |pin: &Pin| kept.iter().zip(norms).map(|(&j, norm)| pin.direction[j] * norm).collect::<Vec<f64>>();
-    let of = |kind: Kind| pins.iter().filter(move |p| p.kind == kind).map(scaled).collect::<Vec<_>>();
-    let (grown, lifted, mut pinned) = (of(Kind::Growth), of(Kind::Lift), of(Kind::Family));
-    let mut null = decomposition.null_vectors();
-    reduce(&mut pinned);
-    reduce(&mut null);
-    let all = [(grown, Origin::Scale), (lifted, Origin::Lift), (pinned, Origin::Start), (null, Origin::Here)];
-    for (vectors, origin) in all {
-        for v in vectors {
-            let mut direction = vec![0.0; count];
-            let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
-            let unit = v[leading] / norms[leading];
-            for a in (0..v.len()).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
-                direction[kept[a]] = v[a] / norms[a] / unit;
-            }
-            directions.push((direction, origin));
+    let scaled =
+        |direction: &Vec<f64>| kept.iter().zip(norms).map(|(&j, norm)| direction[j] * norm).collect::<Vec<f64>>();
+    let here = |kind: Kind| question.symmetries.iter().filter(move |s| s.0 == kind).map(|s| scaled(&s.1));
+    // leading parameter 1, nothing that is rounding
+    let sparse = |v: Vec<f64>| {
+        let mut direction = vec![0.0; count];
+        let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
+        let unit = v[leading] / norms[leading];
+        for a in (0..v.len()).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
+            direction[kept[a]] = v[a] / norms[a] / unit;
         }
+        direction
+    };
+    lost.extend(here(Kind::Growth).map(|v| (sparse(v), Origin::Scale)));
+    lost.extend(here(Kind::Lift).map(|v| (sparse(v), Origin::Lift)));
+    let mut families: Vec<Vec<f64>> = here(Kind::Family).collect();
+    let there = question.pins.iter().filter(|p| p.kind == Kind::Family);
+    let mut there: Vec<Vec<f64>> = there.map(|p| scaled(&p.direction)).collect();
+    let mut null = decomposition.null_vectors();
+    for vectors in [&mut families, &mut there, &mut null] {
+        reduce(vectors);
     }
-    directions
+    let families = families.into_iter().zip(there);
+    lost.extend(families.map(|(v, start)| (sparse(v), Origin::Start(sparse(start)))));
+    lost.extend(null.into_iter().map(|v| (sparse(v), Origin::Here)));
+    lost
 }
 
 /// Gauss-Jordan with complete pivoting on the rows: each keeps one pivot that no other has.

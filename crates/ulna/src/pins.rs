@@ -21,6 +21,9 @@ pub enum Kind {
     Family,
 }
 
+/// A direction over the unknowns, rad and mm, that changes nothing.
+pub(crate) type Symmetry = (Kind, Vec<f64>);
+
 /// One more equation that keeps a direction at its start. Nothing opposes it, so it is met exactly, whatever the noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pin {

@@ -120,7 +120,8 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
     way.reweigh(&mut report)?;
     let sizeless = way.pins.iter().any(|p| p.kind == Kind::Growth);
     let collapsed = sizeless && collapsed(way.problem, &way.parameters());
-    if collapsed || search_reason.is_some() && poor(way.problem, &way.parameters(), report.cost) {
+    let ended = report.termination.converged() || search_reason.is_some();
+    if collapsed || ended && !free.is_empty() && poor(way.problem, &way.parameters(), report.cost) {
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;
