@@ -225,7 +225,7 @@ def identify(
     """What these readings can and cannot determine at the problem's own arm, without fitting."""
 
 def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:
-    """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how the fitted parameters follow held ones
+    """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how fitted parameters follow held ones
     that are themselves uncertain. `held` (h,): indices of held parameters. Units as the parameters'."""
 
 def recalibrate(

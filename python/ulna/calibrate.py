@@ -38,20 +38,17 @@ def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) 
     study = with_options(study, **overrides)
     hold = study.hold_mask()
     began = time.perf_counter()
-    fitted = run_fit(study, hold, progress)
+    problem = study.problem()
+    fitted = _fit(study, problem, hold, progress)
     seconds = time.perf_counter() - began
     arm = study.arm.with_parameters(fitted.parameters)
     identification = Identification.from_core(fitted.identifiability)
-    covariance = ParameterCovariance(
-        [study.arm.parameter_names[column] for column in fitted.covariance_columns],
-        fitted.covariance,
-        [dict(direction) for direction in identification.lost],
-    )
+    covariance = _covariance(study, problem, fitted, hold, identification)
     artefacts, after = figures(arm, study)
     _, before = figures(study.arm, study)
     return Result(
         arm=dataclasses.replace(arm, uncertainty=covariance),
-        parameters=_parameters(study, fitted, hold, identification),
+        parameters=_parameters(study, fitted, hold, covariance, identification),
         covariance=covariance,
         identifiability=identification,
         fit=FitSummary.from_core(fitted, sum(len(group) for group in study.readings)),
@@ -85,10 +82,13 @@ def with_options(study: Study, **overrides: Any) -> Study:
 
 def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = None) -> _core.Fitted:
     """The core's fit with the study's options; its complaints as UlnaInputError, naming the study."""
+    return _fit(study, study.problem(), hold, progress)
+
+
+def _fit(study: Study, problem: _core.Problem, hold: NDArray[np.bool_], progress: Progress | None) -> _core.Fitted:
     from ulna import _core
 
     options = study.fit
-    problem = study.problem()
     try:
         return _core.fit(
             problem,
@@ -104,20 +104,54 @@ def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = N
         raise UlnaInputError(f"{study.label}: {error}") from None
 
 
+def _covariance(
+    study: Study,
+    problem: _core.Problem,
+    fitted: _core.Fitted,
+    hold: NDArray[np.bool_],
+    identification: Identification,
+) -> ParameterCovariance:
+    """Of the fitted parameters, and of held ones that an earlier calibration left uncertain.
+
+    What is not known of a held parameter passes on to those fitted around it: with S = ∂(fitted)/∂(held), C_fitted
+    grows by S C_held Sᵀ and the two are correlated by S C_held (consider covariance, Schmidt 1966).
+    """
+    from ulna import _core
+
+    names = study.arm.parameter_names
+    fitted_names = [names[column] for column in fitted.covariance_columns]
+    lost = [dict(direction) for direction in identification.lost]
+    known = study.arm.uncertainty
+    kept = [k for k, name in enumerate(known.names) if hold[names.index(name)]] if known is not None else []
+    if known is None or not kept:
+        return ParameterCovariance(fitted_names, fitted.covariance, lost)
+    held_names = [known.names[k] for k in kept]
+    held = known.matrix[np.ix_(kept, kept)]
+    columns = np.array([names.index(name) for name in held_names], dtype=np.int64)
+    follow = _core.held_sensitivity(problem, hold, fitted, columns)
+    both = follow @ held
+    matrix = np.block([[fitted.covariance + both @ follow.T, both], [both.T, held]])
+    earlier = [dict(direction) for direction in known.lost if set(direction["combination"]) & set(held_names)]
+    return ParameterCovariance(fitted_names + held_names, matrix, lost + earlier)
+
+
 def _parameters(
-    study: Study, fitted: _core.Fitted, hold: NDArray[np.bool_], identification: Identification
+    study: Study,
+    fitted: _core.Fitted,
+    hold: NDArray[np.bool_],
+    covariance: ParameterCovariance,
+    identification: Identification,
 ) -> list[Parameter]:
     """Start, value, standard uncertainty and status of every parameter of the arm, in its order."""
     names = study.arm.parameter_names
     u = np.full(len(names), np.nan)
-    if len(fitted.covariance_columns):
-        # rounding may leave a variance that should be zero a hair below it
-        u[fitted.covariance_columns] = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.0))
+    # rounding may leave a variance that should be zero a hair below it
+    u[[names.index(name) for name in covariance.names]] = np.sqrt(np.maximum(np.diag(covariance.matrix), 0.0))
     lost = set(identification.not_determined)
     rows = []
     for k, (name, unit) in enumerate(zip(names, study.arm.parameter_units, strict=True)):
         status = "held" if hold[k] else "not-determined" if name in lost else "fitted"
-        known = status == "fitted" and np.isfinite(u[k])
+        known = status != "not-determined" and np.isfinite(u[k])
         rows.append(
             Parameter(
                 name=name,

@@ -20,8 +20,10 @@ F64 = NDArray[np.float64]
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
-MOVES_MM = 1e-6
-"""A lost direction matters at a pose where a step of one unit along it moves the tip by more than this, mm."""
+MOVES_MM = 1e-3
+"""A lost direction matters at a pose where a step along it as large as a drawing leaves open, `DRAWN_MM` or `DRAWN_RAD`
+of its leading parameter, moves the tip by more than this, mm."""
+DRAWN_MM, DRAWN_RAD = 1.0, 0.01
 
 
 class TipUncertainty:
@@ -41,6 +43,9 @@ class TipUncertainty:
         for row, direction in enumerate(self._lost):
             for name, weight in direction["combination"].items():
                 self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
+            units = dict(zip(arm.parameter_names, arm.parameter_units, strict=True))
+            sizes = [(w if units[n] == "mm" else w * DRAWN_MM / DRAWN_RAD) for n, w in direction["combination"].items()]
+            self._directions[row] *= DRAWN_MM / max(abs(size) for size in sizes)
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 
