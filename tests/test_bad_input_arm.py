@@ -42,6 +42,8 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ("'joint.2.d'", "got 1.5", "'hayati'", 'model = "dh"'),
     ),
     "sign": ("d = 1.5", "d = 1.5\nsign = 2", ("'joint.2.sign'", "got 2", "1 or -1")),
+    "sign of truth": ("d = 1.5", "d = 1.5\nsign = true", ("'joint.2.sign'", "got True", "1 or -1")),
+    "two ways of a tip": ("r = 39.0", "x = 0.5, r = 39.0", ("'probe.bent.tip'", "mixed", "x, y, z or theta0, r, h")),
     "model": ("d = 1.5", 'd = 1.5\nmodel = "poe"', ("'joint.2.model'", "'poe'", "'dh' or 'hayati'")),
     "limits swapped": ("[-3.0, 3.0]", "[3.0, -3.0]", ("'joint.1.limits'", "[3.0, -3.0]", "lower limit first")),
     "one limit": ("[-3.0, 3.0]", "[3.0]", ("'joint.1.limits'", "at least 2 entries (there are 1)")),
@@ -110,6 +112,8 @@ def test_a_file_that_is_no_text(tmp_path: Path, content: bytes, fragments: tuple
     [
         ("{", ("not valid JSON", "line 1")),
         ("[]", ("a list", "expected an object")),
+        ('{"format": NaN}', ("NaN is no number in JSON",)),
+        ("[" * 100_000, ("brackets within brackets",)),
         ('{"format": "ulna-result/1"}', ("'arm'", "Calibrate again")),
         ('{"format": "ulna-result/7"}', ("version 7", "Update Ulna")),
     ],

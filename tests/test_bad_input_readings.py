@@ -44,7 +44,11 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "decimal commas": (BARS.replace(".", ","), ("row 1 (line 2", "8 cells, expected 5", "decimal commas?")),
     "semicolons below": (
         BARS.replace(",", ";").replace("q1;q2;q3;placement;feature", "q1,q2,q3,placement,feature"),
-        ("row 1 (line 2", "1 cells", "separated by semicolons?"),
+        ("row 1 (line 2", "has 1 cell,", "separated by semicolons?"),
+    ),
+    "an open quotation mark": (
+        BARS.replace("\n", '\n"', 1),
+        ("row 1 (line 2", "has 1 cell,", "quotation mark not closed?"),
     ),
     "old line ends": (BARS.replace("\n", "\r").encode(), ("lone carriage return", "Unix or Windows line ends")),
     "latin header": (BARS.replace("feature", "länge").encode("latin-1"), ("line 1 is not UTF-8", "Save it as UTF-8")),

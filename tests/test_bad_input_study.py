@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.small_study import SmallStudy, says
 
-from ulna import UlnaInputError, calibrate
+from ulna import Study, UlnaInputError, calibrate
 
 CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no format": ('format = "ulna-study/1"\n', "", ("key 'format' is missing",)),
@@ -43,7 +43,19 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "extras": ("[fit]", '[fit]\nextras = ["compliance"]', ("'fit.extras'", "'compliance'", "later version")),
     "start": ("[fit]", '[fit]\nstart = "guess"', ("'fit.start'", "'guess'", "'given' or 'search'")),
     "whole number": ("[fit]", "[fit]\nseed = 0.5", ("'fit.seed'", "got 0.5", "a whole number")),
-    "no readings": ("[[readings]]", "[readings]", ("'readings'", "a list")),
+    "huge seed": ("[fit]", f"[fit]\nseed = {2**64}", ("'fit.seed'", f"got {2**64}", f"at most {2**63 - 1}")),
+    "negative seed": ("[fit]", "[fit]\nseed = -1", ("'fit.seed'", "got -1", "at least 0")),
+    "huge iterations": (
+        "[fit]",
+        "[fit]\nmax_iterations = 99999999999999999999999",
+        ("'fit.max_iterations'", "at most 1000000"),
+    ),
+    "digits without end": ("[fit]", "[fit]\nseed = " + "9" * 5000, ("study.toml: ", "thousands of digits")),
+    "version without end": ("ulna-study/1", "ulna-study/" + "9" * 5000, ("key 'format'", "unknown format")),
+    "brackets without end": ("[fit]", "[fit]\nhold = " + "[" * 5000, ("study.toml: ", "brackets within brackets")),
+    "character 0 in the readings' path": ('"bars.csv"', '"a\\u0000b"', ("a\\x00b", "no character 0")),
+    "character 0 in the arm's path": ('"arm.toml"', '"a\\u0000b"', ("a\\x00b", "no character 0")),
+    "no readings": ("[[readings]]", "[readings]", ("'readings'", "one table", "a list", "Write [[readings]]")),
     "missing arm": ('"arm.toml"', '"arms.toml"', ("arms.toml: no such file", "Did you mean 'arm.toml'?")),
     "missing readings": ('"bars.csv"', '"bar.csv"', ("bar.csv: no such file", "Did you mean 'bars.csv'?")),
     "unknown artefact": (
@@ -62,6 +74,15 @@ def test_what_a_study_file_is_told(tmp_path: Path, case: str) -> None:
     small = SmallStudy(tmp_path)
     small.swap("study.toml", old, new)
     says(small.error(), str(tmp_path), *fragments)
+
+
+def test_a_device_that_never_ends(tmp_path: Path) -> None:
+    # stands for /dev/zero: a file with a hole, of which no more than the limit is read
+    path = tmp_path / "study.toml"
+    with path.open("wb") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(UlnaInputError, match="more than 16 MB, too large"):
+        Study.load(path)
 
 
 def test_the_good_study_loads(tmp_path: Path) -> None:

@@ -76,6 +76,26 @@ def test_a_full_disk_is_told(tmp_path: Path) -> None:
     assert "No space left" in done.stderr
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+@pytest.mark.parametrize(("command", "out"), [("calibrate", "out"), ("measure", "points.csv")])
+def test_no_room_for_a_result_names_it(tmp_path: Path, command: str, out: str) -> None:
+    import resource
+
+    study = write_lengths(tmp_path)
+    before = sorted(path.name for path in tmp_path.iterdir())
+    inputs = [study] if command == "calibrate" else [tmp_path / "start.toml", tmp_path / "rows.csv"]
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "ulna", command, *map(str, inputs), "-o", str(tmp_path / out)],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert_bad_input(done, f"error: {tmp_path / out}: cannot be written (File too large)")
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_ctrl_c_leaves_nothing(tmp_path: Path) -> None:
     study = write_lengths(tmp_path, rows=3000, fit='start = "search"')

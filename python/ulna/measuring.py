@@ -16,6 +16,7 @@ from ulna.files.arm import WHAT, arm_of_result, load_arm
 from ulna.files.cells import Header
 from ulna.files.checks import MOST_RAD
 from ulna.files.columns import check_columns
+from ulna.files.covariance import noise_of_result
 from ulna.files.readings import WHAT as WHAT_READINGS
 from ulna.files.stream import Piece, count_rows, stream
 from ulna.files.table import read_header
@@ -205,6 +206,4 @@ def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
     document, _ = read_json(path, WHAT)
     check_format(document, path, "ulna-result")
     arm = arm_of_result(document, path)
-    noise = (document.get("provenance") or {}).get("noise") or {}
-    encoder_rad = noise.get("encoder_rad")
-    return arm, None if encoder_rad is None else np.broadcast_to(np.array(encoder_rad, dtype=np.float64), (arm.n,))
+    return arm, noise_of_result(document, arm, path)

@@ -6,17 +6,25 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from pydantic import Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic_core import PydanticCustomError
 
 from ulna.errors import UlnaInputError
+from ulna.files.covariance import covariance_of_result
 from ulna.files.models import Strict, fill
 from ulna.files.output import write_file
 from ulna.files.toml import check_format, read_json, read_toml
 from ulna.files.units import Units
-from ulna.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.model import Arm, Joint, Probe
 
 WHAT = 'an arm file (TOML, format = "ulna-arm/1") or a result.json'
+
+
+def _no_truth(value: Any) -> Any:
+    """Python takes true for 1."""
+    if isinstance(value, bool):
+        raise PydanticCustomError("sign", "1 or -1")
+    return value
 
 
 class JointTable(Strict):
@@ -32,7 +40,7 @@ class JointTable(Strict):
     """Offset along the axis. Required of a DH joint, except the last."""
     beta: float | None = None
     """Required of a Hayati joint, instead of d."""
-    sign: Literal[1, -1] = 1
+    sign: Annotated[Literal[1, -1], BeforeValidator(_no_truth)] = 1
     model: Literal["dh", "hayati"] = "dh"
     name: str | None = None
     limits: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
@@ -101,7 +109,21 @@ def load_arm_and_hash(path: Path) -> tuple[Arm, str]:
         return arm_of_result(document, path), digest
     document, digest = read_toml(path, WHAT)
     check_format(document, path, "ulna-arm")
+    _check_tips(document, path)
     return _arm(fill(ArmFile, document, path), path), digest
+
+
+def _check_tips(document: dict[str, Any], path: Path) -> None:
+    """One point is written in one way: an extra key alone would be a riddle. Raises UlnaInputError."""
+    probes = document.get("probe")
+    for name, probe in probes.items() if isinstance(probes, dict) else ():
+        tip = probe.get("tip") if isinstance(probe, dict) else None
+        keys = set(tip) if isinstance(tip, dict) else set()
+        if keys & {"x", "y", "z"} and keys & {"theta0", "r", "h"}:
+            raise UlnaInputError(
+                f"{path}: key 'probe.{name}.tip': got {', '.join(tip or ())}, two ways of writing a point mixed; "
+                "expected x, y, z or theta0, r, h. Keep one of them."
+            )
 
 
 def arm_of_result(document: dict[str, Any], path: Path) -> Arm:
@@ -112,16 +134,7 @@ def arm_of_result(document: dict[str, Any], path: Path) -> Arm:
         raise UlnaInputError(f"{path}: key 'arm' is missing or no table; expected the calibrated arm. Calibrate again.")
     whole = {"format": "ulna-arm/1", "units": {"length": "mm", "angle": "rad"}, **arm}
     found = _arm(fill(ArmFile, whole, path), path)
-    try:
-        names = [str(name) for name in document["covariance"]["names"]]
-        matrix = np.array(document["covariance"]["matrix"], dtype=np.float64).reshape(len(names), len(names))
-        lost = [dict(direction) for direction in document["identifiability"]["lost"]]
-    except (KeyError, TypeError, ValueError) as error:
-        raise UlnaInputError(
-            f"{path}: keys 'covariance' and 'identifiability' are not as ulna-result/1 says ({type(error).__name__}: "
-            f"{error}); expected names, a square matrix and a list of lost directions. Calibrate again."
-        ) from None
-    return Arm(found.name, found.joints, found.probes, ParameterCovariance(names, matrix, lost))
+    return Arm(found.name, found.joints, found.probes, covariance_of_result(document, found, path))
 
 
 def _arm(file: ArmFile, path: Path) -> Arm:

@@ -78,8 +78,11 @@ def _wrong_count(header: Header, row: int, cells: list[str], numbers: int) -> No
         hint = "Are these decimal commas? Write numbers with a decimal point."
     elif len(cells) == 1 and ";" in cells[0]:
         hint = "Are the columns separated by semicolons? Write commas between them and points in numbers."
+    elif any("\n" in cell for cell in cells):
+        hint = "Is a quotation mark not closed? A cell runs over several lines."
+    count = f"{len(cells)} cell{'s' * (len(cells) != 1)}"
     raise UlnaInputError(
-        f"{header.path}: {header.where(row)} has {len(cells)} cells, expected {len(header.columns)} as in the header "
+        f"{header.path}: {header.where(row)} has {count}, expected {len(header.columns)} as in the header "
         f"({', '.join(header.columns)}). {hint}"
     )
 

@@ -52,6 +52,8 @@ def _explain(detail: ErrorDetails, model: type[BaseModel]) -> str:
                 'Add units = { length = "mm", angle = "rad" } (length: mm, m or in; angle: rad or deg).'
             )
         return f"key '{key}' is missing. Add it."
+    if kind == "list_type" and isinstance(value, dict):
+        return f"key '{key}': got one table [{key}], expected a list of tables. Write [[{key}]], with two brackets."
     shown = f"{str(value)[:60]!r}" if isinstance(value, str) else str(value)[:60]
     return f"key '{key}': got {shown}, expected {_expected(detail)}. Correct it."
 
@@ -84,6 +86,8 @@ def _expected(detail: ErrorDetails) -> str:
         return f"a number greater than {context['gt']:g}"
     if kind == "greater_than_equal":
         return f"a number of at least {context['ge']:g}"
+    if kind == "less_than_equal":
+        return f"a number of at most {context['le']}"
     return detail["msg"]
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import re
 import secrets
 import shutil
 import threading
@@ -14,6 +16,9 @@ from ulna.errors import UlnaInputError
 
 #: staging places of this process: whoever must end it at once takes them away first
 UNDER_WAY: set[Path] = set()
+
+#: no space, too large a file, quota: only writing fails so
+_NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
 #: held while results move from staging to their places
 MOVING = threading.Lock()
@@ -70,7 +75,10 @@ def output_folder(folder: str | Path, names: Sequence[str], force: bool = False)
             staging.mkdir(mode=0o700)
         except OSError as error:
             raise _unwritable(folder, error) from None
-        yield staging
+        try:
+            yield staging
+        except OSError as error:  # what is done here is writing
+            raise _unwritable(folder, error) from None
         absent = [name for name in names if not (staging / name).is_file()]
         if absent:
             raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
@@ -128,7 +136,12 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
             staged.touch(mode=0o600, exist_ok=False)
         except OSError as error:
             raise _unwritable(path, error) from None
-        yield staged
+        try:
+            yield staged
+        except OSError as error:
+            if not _no_room(error):
+                raise  # the readings may be what failed
+            raise _unwritable(path, error) from None
         with MOVING:
             staged.chmod(0o666 & ~_umask())
             staged.replace(path)
@@ -146,6 +159,11 @@ def _staging(target: Path, stem: str, suffix: str = "") -> Path:
     return staging
 
 
+def _no_room(error: OSError) -> bool:
+    number = re.search(r"\(os error (\d+)\)", str(error))  # as Polars says it, without errno
+    return (int(number[1]) if number else error.errno) in _NO_ROOM
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
@@ -153,5 +171,5 @@ def _umask() -> int:
 
 
 def _unwritable(path: Path, error: OSError) -> UlnaInputError:
-    reason = error.strerror or str(error)
-    return UlnaInputError(f"{path}: cannot be written ({reason}). Choose a place where you may write.")
+    reason = re.sub(r" \(os error \d+\)", "", error.strerror or str(error))
+    return UlnaInputError(f"{path}: cannot be written ({reason}). Choose a place with room where you may write.")

@@ -56,8 +56,8 @@ class FitTable(Strict):
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
     extras: list[Literal["encoder-harmonics", "link-expansion", "compliance"]] = Field(default_factory=list)
-    seed: Annotated[int, Field(ge=0)] = 0
-    max_iterations: Annotated[int, Field(ge=1)] = 200
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
+    max_iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 200
     known_length: Positive | None = None
     """How well lengths are known before any reading (default 1 mm); worse-determined parameters are called weak."""
     known_angle: Positive | None = None

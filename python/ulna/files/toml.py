@@ -11,12 +11,17 @@ from typing import Any
 
 from ulna.errors import UlnaInputError, nearest
 
+#: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
+MOST_BYTES = 16 << 20
+
 
 def read_bytes(path: Path, what: str, limit: int = -1) -> bytes:
     """The content of a file, or its first `limit` bytes; `what` is how a message calls it ("an arm file").
 
     Raises UlnaInputError where there is no such file or it cannot be read.
     """
+    if "\0" in str(path):
+        raise UlnaInputError(f"{str(path)!r}: a path holds no character 0; expected the path of {what}. Correct it.")
     try:
         with path.open("rb") as stream:
             return stream.read(limit)
@@ -46,7 +51,9 @@ def sha256(content: bytes) -> str:
 
 def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
     """A TOML document and the file's SHA-256. A byte-order mark and Windows line ends are fine."""
-    content = read_bytes(path, what)
+    content = read_bytes(path, what, MOST_BYTES + 1)
+    if len(content) > MOST_BYTES:
+        raise UlnaInputError(f"{path}: more than {MOST_BYTES >> 20} MB, too large; expected {what}. Check the path.")
     text = _text(content, path, what)
     if not text.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
@@ -54,6 +61,8 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
         return tomllib.loads(text), sha256(content)
     except tomllib.TOMLDecodeError as error:
         raise UlnaInputError(f"{path}: not valid TOML: {error}. Expected {what}; correct that place.") from None
+    except (RecursionError, ValueError) as error:
+        raise UlnaInputError(_beyond(path, error, what)) from None
 
 
 def read_json(path: Path, what: str) -> tuple[dict[str, Any], str]:
@@ -63,14 +72,30 @@ def read_json(path: Path, what: str) -> tuple[dict[str, Any], str]:
     if not text.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     try:
-        document = json.loads(text)
+        document = json.loads(text, parse_constant=_no_number)
     except json.JSONDecodeError as error:
         raise UlnaInputError(
             f"{path}: not valid JSON: {error.msg} (at line {error.lineno}, column {error.colno}). Expected {what}."
         ) from None
+    except (RecursionError, ValueError) as error:
+        raise UlnaInputError(_beyond(path, error, what)) from None
     if not isinstance(document, dict):
         raise UlnaInputError(f"{path}: the document is a {type(document).__name__}, expected an object: {what}.")
     return document, sha256(content)
+
+
+def _no_number(constant: str) -> Any:
+    raise ValueError(f"{constant} is no number in JSON")
+
+
+def _beyond(path: Path, error: Exception, what: str) -> str:
+    """The document is well-formed, as far as it goes, but no file of ours."""
+    reason = str(error)
+    if isinstance(error, RecursionError):
+        reason = "too many brackets within brackets"
+    elif "integer string conversion" in reason:
+        reason = "a whole number of thousands of digits"
+    return f"{path}: cannot be used: {reason}. Expected {what}; correct that place."
 
 
 def _text(content: bytes, path: Path, what: str) -> str:
@@ -92,7 +117,7 @@ def check_format(document: dict[str, Any], path: Path, kind: str, newest: int = 
     if "format" not in document:
         raise UlnaInputError(f"{path}: key 'format' is missing; expected {expected} as the first line. Add it.")
     value = document["format"]
-    match = re.fullmatch(r"(ulna-[a-z-]+)/([1-9][0-9]*)", value) if isinstance(value, str) else None
+    match = re.fullmatch(r"(ulna-[a-z-]+)/([1-9][0-9]{0,8})", value) if isinstance(value, str) else None
     if match is None:
         raise UlnaInputError(f"{path}: key 'format': got {value!r}, an unknown format; expected {expected}.")
     if match[1] != kind:
