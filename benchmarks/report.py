@@ -10,6 +10,11 @@ RATES = {"forward": FORWARD_POSES, "residual_jacobian": 2 * RESIDUAL_LENGTHS}
 
 
 def _value(task: str, seconds: float) -> str:
+    """A time in seconds (or, for memory, megabytes) as a table shows it; number and unit stay on one line."""
+    return _plain_value(task, seconds).replace(" ", "\u00a0")
+
+
+def _plain_value(task: str, seconds: float) -> str:
     if task in RATES:
         return f"{RATES[task] / seconds / 1e6:.3g} M/s"
     if task.endswith("_mb"):
