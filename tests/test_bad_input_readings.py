@@ -50,6 +50,7 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
         BARS.replace("\n", '\n"', 1),
         ("row 1 (line 2", "has 1 cell,", "quotation mark not closed?"),
     ),
+    "a comment first": ("# read on Monday\n" + BARS, ("line 1 begins with '#'", "read on Monday", "q1 … q3")),
     "old line ends": (BARS.replace("\n", "\r").encode(), ("lone carriage return", "Unix or Windows line ends")),
     "latin header": (BARS.replace("feature", "länge").encode("latin-1"), ("line 1 is not UTF-8", "Save it as UTF-8")),
     "open quote": (

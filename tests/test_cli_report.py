@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import itertools
 from typing import Any
@@ -17,11 +18,11 @@ from ulna.figures import NAMES, PlacementFigures
 from ulna.identify import Identification
 from ulna.model import Arm, Joint, ParameterCovariance, Probe
 from ulna.probes import probe_views
-from ulna.report.calibration import calibration_report
+from ulna.report.calibration import calibration_report, equations, where_to_look
 from ulna.report.cross_validation import cross_validation_report
 from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
 from ulna.report.figures import per_placement
-from ulna.report.identification import combination
+from ulna.report.identification import combination, determined_in_words
 from ulna.result import FitSummary, Parameter, Result
 
 
@@ -174,3 +175,35 @@ def test_on_the_axis_the_cylindrical_angle_is_undefined() -> None:
     assert view.on_axis
     assert view.as_dict() | {"theta0_rad": None, "u_theta0_rad": None, "u_r_mm": None} == view.as_dict()
     assert view.u_h_mm == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("lost", "words"), [(1, "1 combination is lost"), (11, "11 combinations are lost")])
+def test_one_is_singular_and_eleven_are_not(lost: int, words: str) -> None:
+    found = dataclasses.replace(result().identifiability, parameters=24, determined=24 - lost)
+    assert words in determined_in_words(found)
+
+
+@pytest.mark.parametrize(("degrees", "words"), [(1, " 1 degree of freedom"), (11, " 11 degrees of freedom")])
+def test_degrees_of_freedom_are_counted(degrees: int, words: str) -> None:
+    assert words in equations(dataclasses.replace(result().fit, degrees_of_freedom=degrees))
+
+
+def test_after_a_bad_end_the_worst_row_and_a_missing_placement_are_named() -> None:
+    rows = {
+        "row": [1, 2, 3, 4],
+        "file": ["bars.csv"] * 4,
+        "artefact": ["bar"] * 4,
+        "placement": ["1"] * 4,
+        "feature": ["A", "B", "A", "B"],
+        "norm_mm": [1.0, 64.0, 3.0, 2.0],
+    }
+    text = where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(rows)))
+    assert "row 2 of bars.csv (artefact 'bar', placement '1')" in text
+    assert "All 4 readings of artefact 'bar' were taken as one standing" in text
+    text = where_to_look(
+        dataclasses.replace(result(), residuals=pl.DataFrame(rows | {"placement": ["1", "1", "2", "2"]}))
+    )
+    assert "one standing" not in text
+    lengths = rows | {"feature": pl.Series([None] * 4, dtype=pl.String)}
+    assert "one standing" not in where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(lengths)))
+    assert where_to_look(result()) == ""

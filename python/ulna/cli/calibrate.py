@@ -23,7 +23,7 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
     import ulna
     from ulna.cli import output
     from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.calibration import calibration_report
+    from ulna.report.calibration import calibration_report, where_to_look
     from ulna.result import FILES
 
     if out is not None:
@@ -45,4 +45,7 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
         output.say("Nothing was written: give -o DIR to keep the result.")
     if not result.fit.converged:
         output.say(f"The fit did not converge ({result.fit.termination}): do not use these numbers.")
+        hint = where_to_look(result)
+        if hint:
+            output.say(hint)
         raise typer.Exit(1)

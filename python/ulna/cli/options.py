@@ -15,5 +15,5 @@ OutFolder = Annotated[
     Path | None,
     typer.Option("-o", "--out", metavar="DIR", help="Folder to write to; without it nothing is written."),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]

@@ -58,6 +58,11 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
     extra = [column for column in there if column not in expected]
     if not missing and not extra:
         return
+    if header.columns[0].startswith("#"):
+        raise UlnaInputError(
+            f"{header.path}: line 1 begins with '#' ({', '.join(header.columns)[:60]}); expected the header with "
+            f"{expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
+        )
     slips = [column for column in header.columns if column.lower() in missing]
     what = f"the column '{missing[0]}' is missing" if missing else f"the column '{extra[0]}' is one too many"
     raise UlnaInputError(

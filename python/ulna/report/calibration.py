@@ -55,8 +55,30 @@ def equations(fit: FitSummary) -> str:
     chi2 = "" if fit.chi2_per_dof is None else f", chi² per degree {fit.chi2_per_dof:.3f} (1: the stated noise fits)"
     return (
         f"{fit.readings} readings, {fit.observations} equations{placements}, "
-        f"{fit.degrees_of_freedom} degrees of freedom{chi2}."
+        f"{fit.degrees_of_freedom} degree{'s' * (fit.degrees_of_freedom != 1)} of freedom{chi2}."
     )
+
+
+def where_to_look(result: Result) -> str:
+    """After a fit that ended badly: the reading that fits worst, and readings that were all taken as one standing."""
+    hints = []
+    residuals = result.residuals
+    if not len(residuals):
+        return ""
+    worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
+    hints.append(
+        f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
+        f"(artefact '{worst['artefact']}', placement '{worst['placement']}'); residuals.csv has them all."
+    )
+    # length rows have no feature, and it does not matter which standing they are of
+    touches = residuals.filter(residuals["feature"].is_not_null())
+    for (artefact,), rows in touches.group_by("artefact", maintain_order=True):
+        if rows["placement"].n_unique() == 1 and len(rows) > 2:
+            hints.append(
+                f"All {len(rows)} readings of artefact '{artefact}' were taken as one standing, "
+                f"'{rows['placement'][0]}': is a column 'placement' missing?"
+            )
+    return " ".join(hints)
 
 
 def parameter_table(parameters: list[Parameter]) -> RenderableType:

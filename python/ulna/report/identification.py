@@ -33,10 +33,11 @@ def determined_in_words(found: Identification) -> str:
     """One sentence with the counts."""
     if found.determined == found.parameters:
         return f"the readings determine all {found.parameters} free parameters."
+    lost = found.parameters - found.determined
     return (
         f"the readings determine {found.determined} of {found.parameters} free parameters; "
-        f"{found.parameters - found.determined} combinations are lost."
-    ).replace("1 combinations are", "1 combination is")
+        f"{lost} combination{' is' if lost == 1 else 's are'} lost."
+    )
 
 
 def directions(found: Identification) -> list[RenderableType]:
