@@ -137,5 +137,5 @@ def test_fewer_observations_than_unknowns(tmp_path: Path) -> None:
     study, _ = small.load()
     with pytest.raises(UlnaInputError) as caught:
         calibrate(study)
-    for fragment in (f"{small.path}: ", "6 equations for 14 unknowns", "at least 3 more readings, or hold"):
+    for fragment in (f"{small.path}: ", "6 equations for 14 unknowns", "take more readings (at least 3), or hold"):
         assert fragment in str(caught.value)

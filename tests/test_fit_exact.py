@@ -13,7 +13,7 @@ from tests.oracle.published import STRAIGHT_4, TABLE_2, TABLE_3, six_axes, table
 
 from ulna import _core
 
-ENDED_WELL = {"exact", "converged-cost", "converged-step", "converged-gradient"}
+ENDED_WELL = {"exact", "converged-cost", "converged-step"}
 BASE = ["joint.1.theta0", "joint.1.d"]
 
 

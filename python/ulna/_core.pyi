@@ -150,7 +150,7 @@ class Fitted:
     def parameters(self) -> F64: ...
     @property
     def termination(self) -> str:
-        """ "converged-cost", "converged-step", "converged-gradient", "exact", "nothing-to-fit", "no-progress",
+        """ "converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
         "max-iterations", "poor-minimum"."""
     @property
     def converged(self) -> bool: ...

@@ -72,6 +72,10 @@ def with_options(study: Study, **overrides: Any) -> Study:
             raise UlnaInputError(
                 f"{study.label}: key 'fit.{key}': {value!r} comes with a later version; expected {only!r} for now."
             )
+    limits = (("seed", study.fit.seed, 2**63 - 1), ("max_iterations", study.fit.max_iterations, 1_000_000))
+    for name, number, most in limits:
+        if not 0 <= number <= most:
+            raise UlnaInputError(f"{study.label}: key 'fit.{name}': {number}; expected a whole number, 0 to {most}.")
     if study.fit.start not in ("given", "search"):
         raise UlnaInputError(
             f"{study.label}: key 'fit.start': {study.fit.start!r}; expected 'given' or 'search'."

@@ -50,7 +50,7 @@ class FitSummary:
     """How the fit ended."""
 
     termination: str
-    """"converged-cost", "converged-step", "converged-gradient", "exact", "nothing-to-fit", "no-progress",
+    """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
     "max-iterations", "poor-minimum"."""
     converged: bool
     iterations: int

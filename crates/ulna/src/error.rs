@@ -55,7 +55,7 @@ pub enum Error {
     #[error(
         "the readings give {observations} equations for {unknowns} unknowns \
          ({parameters} parameters that these readings could determine and {placement_unknowns} of placements): \
-         take at least {missing} more readings, or hold parameters"
+         take more readings (at least {missing}), or hold parameters"
     )]
     TooFewObservations {
         /// Scalar equations.

@@ -51,6 +51,8 @@ const ITERATIONS: usize = 60;
 /// it is so high that a calibrated arm would not leave it.
 const AGREEING: usize = 4;
 const AGREEING_POOR: usize = 40;
+/// Costs that differ by less than this part belong to the same minimum: starts are given up before the last digits.
+const SAME_MINIMUM: f64 = 1e-4;
 
 pub(crate) fn search(
     problem: &Problem,
@@ -115,13 +117,13 @@ fn search_over(
         }
         let report = minimize(&mut assembly, &mut x, &options, &quiet)?;
         best.starts += 1;
-        let tie = 1e-6 * best.cost + assembly.negligible_cost();
-        if report.cost < best.cost - tie {
+        let tie = SAME_MINIMUM * best.cost + assembly.negligible_cost();
+        if report.cost <= best.cost + tie {
+            agreeing = if report.cost < best.cost - tie { 1 } else { agreeing + 1 };
+        }
+        if report.cost < best.cost {
             best.x = x;
             best.cost = report.cost;
-            agreeing = 1;
-        } else if report.cost <= best.cost + tie {
-            agreeing += 1;
         }
         // the noise as stated, or rounding, explains it; or several starts found the same
         let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;

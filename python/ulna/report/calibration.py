@@ -15,7 +15,6 @@ from ulna.result import FitSummary, Parameter, Result
 _ENDINGS = {
     "converged-cost": "Converged: the sum of squares no longer falls",
     "converged-step": "Converged: the parameters no longer move",
-    "converged-gradient": "Converged: the gradient vanished",
     "exact": "Converged: the readings are met exactly",
     "nothing-to-fit": "Nothing to fit: every parameter is held",
     "no-progress": "NOT converged: no step made progress",
