@@ -139,3 +139,10 @@ def test_fewer_observations_than_unknowns(tmp_path: Path) -> None:
         calibrate(study)
     for fragment in (f"{small.path}: ", "6 equations for 14 unknowns", "take more readings (at least 3), or hold"):
         assert fragment in str(caught.value)
+
+
+@pytest.mark.parametrize(("option", "value"), [("seed", -1), ("seed", 2**63), ("max_iterations", 2_000_000)])
+def test_options_out_of_range_from_python(tmp_path: Path, option: str, value: int) -> None:
+    study, _ = SmallStudy(tmp_path).load()
+    with pytest.raises(UlnaInputError, match=rf"'fit\.{option}': {value}; expected a whole number"):
+        calibrate(study, **{option: value})
