@@ -256,3 +256,73 @@ impl WithSimd for TipsOp<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::samples;
+    use crate::kinematics::{jacobian, tip_mm};
+
+    /// Runs one of the kernels on an instruction set, if the machine has it.
+    #[derive(Clone, Copy, Debug)]
+    enum Level {
+        Detected,
+        #[cfg(target_arch = "x86_64")]
+        Avx2,
+        Scalar,
+    }
+
+    const LEVELS: &[Level] = &[
+        Level::Detected,
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2,
+        Level::Scalar,
+    ];
+
+    impl Level {
+        fn run(self, op: impl WithSimd<Output = ()>) -> bool {
+            match self {
+                Level::Detected => Arch::new().dispatch(op),
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx2 => match pulp::x86::V3::try_new() {
+                    Some(simd) => Simd::vectorize(simd, op),
+                    None => return false,
+                },
+                Level::Scalar => op.with_simd(pulp::Scalar::new()),
+            }
+            true
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_formula() {
+        let arm = samples::table2(10.0);
+        let q_rad: Vec<f64> = (0..7 * 19).map(|i| (i as f64 * 0.618).fract() * 6.0 - 3.0).collect();
+        let (chain, tip) = (Chain::new(&arm), arm.probes()[0].tip_mm);
+        let mut scratch = vec![0.0; scratch_len(&chain)];
+        let mut kept = Poses::from_rows(&q_rad, 7);
+        kept.keep_sin_cos();
+        for &level in LEVELS {
+            for poses in [&Poses::from_rows(&q_rad, 7), &kept] {
+                let mut out = Columns::zeros(3, 19);
+                let mut tile = Columns::zeros(3 * 28, 19);
+                let tips = TipsOp { chain: &chain, poses, tip: Tip::Same(tip), out: &mut out, scratch: &mut scratch };
+                if !level.run(tips) {
+                    continue;
+                }
+                let derivatives =
+                    DerivativesOp { chain: &chain, poses, tip_mm: tip, tile: &mut tile, scratch: &mut scratch };
+                level.run(derivatives);
+                for (row, q) in q_rad.chunks_exact(7).enumerate() {
+                    let (p, j) = (tip_mm(&arm, 0, q), jacobian(&arm, 0, q));
+                    for c in 0..3 {
+                        assert!((out.column(c)[row] - p[c]).abs() < 1e-11, "{level:?}");
+                        for k in 0..27 {
+                            assert!((tile.column(c * 28 + k)[row] - j[(c, k)]).abs() < 1e-11, "{level:?} {k}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
