@@ -1,17 +1,22 @@
 //! `ulna._core.Arm`.
 
-use crate::arrays::{array1, array2, indices, rows, slice};
+use crate::arrays::{array1, array2, indices, rows, slice, warmth};
+use crate::build;
 use crate::errors::{UlnaError, raise};
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+    PyReadonlyArrayDyn,
+};
 use pyo3::prelude::*;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Joint, JointModel, Probe};
+use std::borrow::Cow;
+use ulna::arm::{Compliance, Effects, Expansion};
 use ulna::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{self, Chain, Poses, batch};
+use ulna::kinematics::{self, Angles, Chain, Poses, batch};
 use ulna::simd::Columns;
 
-/// Geometry of an arm and its probes. Immutable.
+/// Geometry of an arm and its probes, and what it does beyond its geometry. Immutable.
 #[pyclass(frozen, module = "ulna._core")]
 #[derive(Clone)]
 pub struct Arm {
@@ -23,10 +28,6 @@ impl Arm {
         let probes = self.inner.probes();
         let missing = || UlnaError::new_err(format!("probe {probe} does not exist; there are {}", probes.len()));
         Ok(probes.get(probe).ok_or_else(missing)?.tip_mm)
-    }
-
-    fn angles<'a>(&self, q_rad: &'a PyReadonlyArray2<'_, f64>) -> PyResult<std::borrow::Cow<'a, [f64]>> {
-        rows(q_rad, self.inner.encoders(), "the encoder angles")
     }
 
     fn columns(&self, columns: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<usize>> {
@@ -42,6 +43,8 @@ impl Arm {
 #[pymethods]
 impl Arm {
     #[new]
+    #[pyo3(signature = (theta0_rad, alpha_rad, a_mm, d_mm, beta_rad, sign, hayati, probe_names, tips_mm,
+                        full_last_link=false))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         theta0_rad: PyReadonlyArray1<'_, f64>,
@@ -53,62 +56,55 @@ impl Arm {
         hayati: PyReadonlyArray1<'_, bool>,
         probe_names: Vec<String>,
         tips_mm: PyReadonlyArray2<'_, f64>,
+        full_last_link: bool,
     ) -> PyResult<Arm> {
         let arrays = [&theta0_rad, &alpha_rad, &a_mm, &d_mm, &beta_rad, &sign].map(slice);
-        let hayati = slice(&hayati);
-        let n = hayati.len();
-        let names = ["theta0_rad", "alpha_rad", "a_mm", "d_mm", "beta_rad", "sign"];
-        for (name, array) in names.iter().zip(&arrays) {
-            if array.len() != n {
-                let message = format!("{name} has {} values, expected one for each of {n} joints", array.len());
-                return Err(UlnaError::new_err(message));
-            }
-        }
-        if n < 2 {
-            return Err(raise(ulna::Error::TooFewJoints(n)));
-        }
-        for (name, array) in names.iter().zip(&arrays[..5]) {
-            if array[n - 1] != 0.0 {
-                let message =
-                    format!("{name} of the last joint is {}; it carries the probe and must have 0", array[n - 1]);
-                return Err(UlnaError::new_err(message));
-            }
-        }
-        let joint = |i: usize| -> PyResult<Joint> {
-            let (d_mm, beta_rad) = (arrays[3][i], arrays[4][i]);
-            let (unused, value) = if hayati[i] { ("d", d_mm) } else { ("beta", beta_rad) };
-            if value != 0.0 {
-                let message =
-                    format!("joint {} has {unused} = {value}, which its model does not use; expected 0", i + 1);
-                return Err(UlnaError::new_err(message));
-            }
-            Ok(Joint {
-                theta0_rad: arrays[0][i],
-                alpha_rad: arrays[1][i],
-                a_mm: arrays[2][i],
-                d_mm,
-                beta_rad,
-                sign: arrays[5][i],
-                model: if hayati[i] { JointModel::Hayati } else { JointModel::Dh },
-            })
+        let joints = build::joints(&arrays, &slice(&hayati), full_last_link)?;
+        let probes = build::probes(probe_names, &rows(&tips_mm, 3, "the tips")?)?;
+        let inner = match arrays[5].last() {
+            Some(&last_sign) if !full_last_link => ulna::arm::Arm::new(joints, last_sign, probes),
+            _ => ulna::arm::Arm::with_full_last_link(joints, probes),
         };
-        let joints = (0..n - 1).map(joint).collect::<PyResult<Vec<_>>>()?;
-        let tips = rows(&tips_mm, 3, "the tips")?;
-        if tips.len() != 3 * probe_names.len() {
-            let message = format!("{} tips were given for {} probes", tips.len() / 3, probe_names.len());
-            return Err(UlnaError::new_err(message));
+        Ok(Arm { inner: inner.map_err(raise)? })
+    }
+
+    #[pyo3(signature = (harmonic_orders=None, harmonics_rad=None, expansion_per_k=None, compliance_rad_per_nm=None,
+                        masses_kg=None, centres_mm=None, gravity=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn with_effects(
+        &self,
+        harmonic_orders: Option<Vec<u32>>,
+        harmonics_rad: Option<PyReadonlyArray3<'_, f64>>,
+        expansion_per_k: Option<PyReadonlyArray1<'_, f64>>,
+        compliance_rad_per_nm: Option<PyReadonlyArray1<'_, f64>>,
+        masses_kg: Option<PyReadonlyArray1<'_, f64>>,
+        centres_mm: Option<PyReadonlyArray2<'_, f64>>,
+        gravity: Option<[f64; 3]>,
+    ) -> PyResult<Arm> {
+        let n = self.inner.encoders();
+        let mut effects = Effects::default();
+        if let (Some(orders), Some(rad)) = (harmonic_orders, harmonics_rad) {
+            effects.harmonics = Some(build::harmonics(orders, &rad, n)?);
         }
-        let probes = probe_names
-            .into_iter()
-            .zip(tips.chunks_exact(3))
-            .map(|(name, t)| Probe { name, tip_mm: [t[0], t[1], t[2]] });
-        let inner = ulna::arm::Arm::new(joints, arrays[5][n - 1], probes.collect()).map_err(raise)?;
-        Ok(Arm { inner })
+        effects.expansion = expansion_per_k.map(|each| Expansion { per_kelvin: slice(&each).into_owned() });
+        if let (Some(compliance), Some(masses), Some(centres)) = (compliance_rad_per_nm, masses_kg, centres_mm) {
+            effects.compliance = Some(Compliance {
+                rad_per_nm: slice(&compliance).into_owned(),
+                bodies: build::bodies(&slice(&masses), &rows(&centres, 3, "the centres of mass")?)?,
+                gravity: gravity.unwrap_or([0.0, 0.0, -1.0]),
+            });
+        }
+        Ok(Arm { inner: self.inner.with_effects(effects).map_err(raise)? })
     }
 
     #[getter]
     fn joints(&self) -> usize {
         self.inner.encoders()
+    }
+
+    #[getter]
+    fn signs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_iter(py, self.inner.signs())
     }
 
     #[getter]
@@ -142,16 +138,17 @@ impl Arm {
         Ok(self.inner.reach_mm(probe))
     }
 
-    #[pyo3(signature = (q_rad, probe=None))]
+    #[pyo3(signature = (q_rad, probe=None, warmth_k=None))]
     fn tip<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: Option<Bound<'py, PyAny>>,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let q = self.angles(&q_rad)?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let (poses, count) = (read.angles(), read.count);
         let chain = Chain::new(&self.inner);
-        let count = q.len() / self.inner.encoders();
         let mut out = vec![0.0; 3 * count];
         let one = match &probe {
             None => Some(0),
@@ -159,7 +156,7 @@ impl Arm {
         };
         if let Some(probe) = one {
             let tip = self.probe(probe)?;
-            py.detach(|| batch::tips_from_rows_mm(&chain, tip, &q, &mut out));
+            py.detach(|| batch::tips_from_rows_mm(&chain, tip, poses, &mut out));
         } else if let Some(given) = probe {
             let each = indices(&given.extract::<PyReadonlyArray1<'_, i64>>()?, "probe")?;
             if each.len() != count {
@@ -168,7 +165,7 @@ impl Arm {
             }
             let tips = each.iter().map(|&p| self.probe(p)).collect::<PyResult<Vec<_>>>()?;
             py.detach(|| {
-                let poses = Poses::from_rows(&q, self.inner.encoders());
+                let poses = Poses::new(poses, self.inner.encoders());
                 let tips = Columns::from_rows(tips.as_flattened(), 3);
                 let mut columns = Columns::zeros(3, count);
                 batch::tips_mm(&chain, &poses, &tips, &mut columns);
@@ -180,69 +177,67 @@ impl Arm {
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
     fn tip_plain<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let q = self.angles(&q_rad)?;
-        let tip = |pose: &[f64]| -> [f64; 3] { kinematics::tip_mm(&self.inner, probe, pose).coords.into() };
-        let out = py.detach(|| q.chunks_exact(self.inner.encoders()).flat_map(tip).collect());
+        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let (poses, n) = (read.angles(), self.inner.encoders());
+        let tip = |row: usize| -> [f64; 3] { kinematics::tip_mm(&self.inner, probe, poses.pose(row, n)).coords.into() };
+        let out = py.detach(|| (0..read.count).flat_map(tip).collect());
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (tip, q) = (self.probe(probe)?, self.angles(&q_rad)?);
-        let count = self.inner.parameter_count();
+        let tip = self.probe(probe)?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let poses = read.angles();
+        let (count, probes) = (self.inner.parameter_count(), self.inner.probes().len());
         let out = py.detach(|| {
-            let mut out = vec![0.0; q.len() / self.inner.encoders() * 3 * count];
-            batch::for_each_derivative(&Chain::new(&self.inner), tip, &q, |row, component, column, value| {
-                let joints = self.inner.joint_parameter_count();
-                let column = if column < joints { column } else { column - joints + self.inner.tip_offset(probe) };
-                if column < self.inner.tip_offset(probe) + 3 {
-                    out[(3 * row + component) * count + column] = value;
+            let mut out = vec![0.0; read.count * 3 * count];
+            let chain = Chain::new(&self.inner);
+            batch::for_each_derivative(&chain, tip, poses, |row, component, column, value| {
+                if let Some(parameter) = chain.parameter_of(column, probe, probes) {
+                    out[(3 * row + component) * count + parameter] = value;
                 }
             });
             out
         });
-        PyArray1::from_vec(py, out).reshape([q.len() / self.inner.encoders(), 3, count])
+        PyArray1::from_vec(py, out).reshape([read.count, 3, count])
     }
 
-    #[pyo3(signature = (q_rad, probe=0))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
     fn encoder_jacobian<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (tip, q) = (self.probe(probe)?, self.angles(&q_rad)?);
-        let n = self.inner.encoders();
-        let signs: Vec<f64> = self.inner.signs().collect();
-        let joints = self.inner.joint_parameter_count();
-        let out = py.detach(|| {
-            let mut out = vec![0.0; q.len() * 3];
-            batch::for_each_derivative(&Chain::new(&self.inner), tip, &q, |row, component, column, value| {
-                let (encoder, value) = match column {
-                    c if c < joints && c % 4 == 0 => (c / 4, -signs[c / 4] * value),
-                    c if c == joints + 3 => (n - 1, signs[n - 1] * value),
-                    _ => return,
-                };
-                out[(3 * row + component) * n + encoder] = value;
-            });
-            out
-        });
-        PyArray1::from_vec(py, out).reshape([q.len() / n, 3, n])
+        self.probe(probe)?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let (poses, n) = (read.angles(), self.inner.encoders());
+        let of_pose = |row: usize| {
+            let jacobian = kinematics::encoder_jacobian(&self.inner, probe, poses.pose(row, n));
+            jacobian.transpose().as_slice().to_vec()
+        };
+        let out = py.detach(|| (0..read.count).flat_map(of_pose).collect());
+        PyArray1::from_vec(py, out).reshape([read.count, 3, n])
     }
 
+    #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None))]
     fn tip_covariance<'py>(
         &self,
         py: Python<'py>,
@@ -250,17 +245,20 @@ impl Arm {
         probe: usize,
         columns: PyReadonlyArray1<'py, i64>,
         covariance: PyReadonlyArray2<'py, f64>,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let (q, columns) = (self.angles(&q_rad)?, self.columns(&columns)?);
+        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref())?, self.columns(&columns)?);
         let covariance = rows(&covariance, columns.len(), "the covariance")?;
         if covariance.len() != columns.len() * columns.len() {
             return Err(UlnaError::new_err("the covariance is not square"));
         }
-        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, &q, &columns, &covariance));
+        let poses = read.angles();
+        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, poses, &columns, &covariance));
         array2(py, out, 6)
     }
 
+    #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None))]
     fn direction_effect<'py>(
         &self,
         py: Python<'py>,
@@ -268,11 +266,13 @@ impl Arm {
         probe: usize,
         columns: PyReadonlyArray1<'py, i64>,
         directions: PyReadonlyArray2<'py, f64>,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.probe(probe)?;
-        let (q, columns) = (self.angles(&q_rad)?, self.columns(&columns)?);
+        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref())?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
-        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, &q, &columns, &directions));
+        let poses = read.angles();
+        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, poses, &columns, &directions));
         Ok(array1(py, &out))
     }
 
@@ -319,10 +319,39 @@ impl Arm {
         Ok((array2(py, postures, n)?, PyArray1::from_vec(py, reached)))
     }
 
-    #[pyo3(signature = (q_rad, probe=0))]
-    fn check_jacobian(&self, q_rad: PyReadonlyArray2<'_, f64>, probe: usize) -> PyResult<f64> {
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
+    fn check_jacobian(
+        &self,
+        q_rad: PyReadonlyArray2<'_, f64>,
+        probe: usize,
+        warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+    ) -> PyResult<f64> {
         self.probe(probe)?;
-        let q = self.angles(&q_rad)?;
-        Ok(ulna::propagate::check_jacobian(&self.inner, probe, &q))
+        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        Ok(ulna::propagate::check_jacobian(&self.inner, probe, read.angles()))
+    }
+}
+
+/// Poses as they were handed over.
+struct Read<'a> {
+    q_rad: Cow<'a, [f64]>,
+    warmth_k: Cow<'a, [f64]>,
+    count: usize,
+}
+
+impl<'a> Read<'a> {
+    fn new(
+        arm: &Arm,
+        q_rad: &'a PyReadonlyArray2<'_, f64>,
+        warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+    ) -> PyResult<Read<'a>> {
+        let n = arm.inner.encoders();
+        let q_rad = rows(q_rad, n, "the encoder angles")?;
+        let count = q_rad.len() / n;
+        Ok(Read { warmth_k: warmth(warmth_k, count, n)?, q_rad, count })
+    }
+
+    fn angles(&self) -> Angles<'_> {
+        Angles { q_rad: &self.q_rad, warmth_k: &self.warmth_k }
     }
 }

@@ -1,7 +1,7 @@
 //! NumPy arrays as the slices the core takes.
 
 use crate::errors::UlnaError;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
 
@@ -21,6 +21,28 @@ pub fn rows<'a>(array: &'a PyReadonlyArray2<'_, f64>, columns: usize, what: &str
     let view = array.as_array();
     if view.ncols() != columns {
         let message = format!("{what} have {} columns, expected {columns}", view.ncols());
+        return Err(UlnaError::new_err(message));
+    }
+    Ok(match view.to_slice() {
+        Some(slice) => Cow::Borrowed(slice),
+        None => Cow::Owned(view.iter().copied().collect()),
+    })
+}
+
+/// Temperatures above 20 °C of `count` poses, one each or one for each joint; none: empty.
+///
+/// # Errors
+/// Another shape.
+pub fn warmth<'a>(
+    array: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+    count: usize,
+    joints: usize,
+) -> PyResult<Cow<'a, [f64]>> {
+    let Some(array) = array else { return Ok(Cow::Borrowed(&[])) };
+    let view = array.as_array();
+    if view.shape() != [count] && view.shape() != [count, joints] {
+        let message =
+            format!("the temperatures have the shape {:?}, expected ({count},) or ({count}, {joints})", view.shape());
         return Err(UlnaError::new_err(message));
     }
     Ok(match view.to_slice() {

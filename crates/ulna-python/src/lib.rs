@@ -2,8 +2,10 @@
 
 mod arm;
 mod arrays;
+mod build;
 mod errors;
 mod fit;
+mod fitted;
 mod problem;
 mod watch;
 
@@ -21,11 +23,12 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("UlnaError", module.py().get_type::<errors::UlnaError>())?;
     module.add_class::<arm::Arm>()?;
     module.add_class::<problem::Problem>()?;
-    module.add_class::<fit::Fitted>()?;
-    module.add_class::<fit::Identifiability>()?;
+    module.add_class::<fitted::Fitted>()?;
+    module.add_class::<fitted::Identifiability>()?;
     module.add_function(wrap_pyfunction!(simd_level, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::identify, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::costs, module)?)?;
     module.add_function(wrap_pyfunction!(fit::held_sensitivity, module)?)?;
     module.add_function(wrap_pyfunction!(fit::recalibrate, module)?)?;
     Ok(())

@@ -10,7 +10,7 @@ use std::time::Instant;
 use ulna::arm::{Arm, Joint, JointModel, Probe, Unit};
 use ulna::assembly::Assembly;
 use ulna::calibrate::{Options, Start, fit, solve};
-use ulna::kinematics::{Chain, Poses, batch};
+use ulna::kinematics::{Angles, Chain, Poses, batch};
 use ulna::monitor::Unwatched;
 use ulna::monte_carlo::{Repeat, recalibrate};
 use ulna::problem::Problem;
@@ -80,15 +80,15 @@ fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> 
     let (q, p) = (angles(rng, 7 * count), angles(rng, 7 * count));
     let tips = |angles: &[f64]| {
         let mut out = vec![0.0; 3 * count];
-        batch::tips_from_rows_mm(&Chain::new(&truth), [10.0, 0.0, 200.0], angles, &mut out);
+        batch::tips_from_rows_mm(&Chain::new(&truth), [10.0, 0.0, 200.0], Angles::cold(angles), &mut out);
         out
     };
     let (from, to) = (tips(&q), tips(&p));
     let distance = |k: usize| (0..3).map(|j| (from[3 * k + j] - to[3 * k + j]).powi(2)).sum::<f64>().sqrt();
     let length_mm: Vec<f64> = (0..count).map(distance).collect();
     let mut problem = Problem::new(start, noise).expect("a valid problem");
-    let rows = LengthRows { q_rad: &q, p_rad: &p, probe: &vec![0; count], length_mm: &length_mm };
-    problem.add_lengths("bar", rows, 0.0).expect("valid rows");
+    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &[], probe: &vec![0; count], length_mm: &length_mm };
+    problem.add_lengths("bar", rows, 0.0, false).expect("valid rows");
     problem
 }
 
@@ -106,7 +106,7 @@ fn searches(rng: &mut Xoshiro256PlusPlus, count: usize) -> (usize, f64) {
             match unit {
                 Unit::Mm => start[j] += rng.random_range(-100.0..100.0),
                 Unit::Rad if j % 4 == 0 => start[j] += rng.random_range(-2.0 * H..2.0 * H),
-                Unit::Rad => {}
+                _ => {}
             }
         }
         readings.set_arm(truth.with_parameters(&start).expect("a valid arm"));

@@ -12,8 +12,12 @@ use crate::monitor::{Monitor, Unwatched};
 use crate::pins::{Kind, Pin, Symmetry};
 use crate::problem::Problem;
 use crate::residuals::{Unweighted, Weighing};
+use crate::robust::Standing;
+use crate::settle::least_scatter;
+use crate::solve::{ASSUMED_SCATTER_MM, prepare};
 pub use crate::solve::{Options, SearchReason, Solution, Start, solve};
 use crate::solver::LeastSquares;
+use crate::solver::gram::Cost;
 use crate::solver::triangle::Triangle;
 use crate::symmetry::{Freedom, fold};
 
@@ -22,7 +26,9 @@ use crate::symmetry::{Freedom, fold};
 pub struct Fitted {
     /// The arm.
     pub arm: Arm,
-    /// Parameters at the start.
+    /// Names of all parameters: the arm's, and the fitted dimensions of artefacts.
+    pub names: Vec<String>,
+    /// Their values at the start.
     pub start: Vec<f64>,
     /// Where the fit ended.
     pub solution: Solution,
@@ -40,8 +46,14 @@ pub struct Fitted {
     pub placement_unknowns: usize,
     /// Equations minus all that was determined.
     pub degrees_of_freedom: usize,
-    /// Cost over degrees of freedom, where noise is stated.
+    /// Cost over degrees of freedom, where noise is stated; with a loss, the scatter of the readings squared.
     pub chi2_per_dof: Option<f64>,
+    /// For each free parameter, what was known of it before: value and standard uncertainty.
+    pub priors: Vec<Option<(f64, f64)>>,
+    /// How far off each reading is, in units of the scatter of its group.
+    pub standing: Standing,
+    /// What the loss lets each reading count, group by group, 0 to 1; none without a loss.
+    pub counted: Option<Vec<Vec<f64>>>,
     /// Residuals of each group at the start.
     pub residuals_start: Vec<Unweighted>,
     /// Residuals of each group at the end.
@@ -52,8 +64,6 @@ pub struct Fitted {
     pub rms_mm: f64,
 }
 
-/// Scatter of a reading taken for granted before there is a fit to show it, mm.
-const ASSUMED_SCATTER_MM: f64 = 0.02;
 /// Poses looked at to name a cause.
 const SAMPLE_POSES: usize = 60;
 
@@ -105,6 +115,25 @@ fn decompose(
     (with(&symmetries), symmetries)
 }
 
+/// The sum of squares at many sets of the free parameters (row-major), placements where they fit best, every reading
+/// weighing alike: what a search without derivatives asks for.
+///
+/// # Errors
+/// No readings, or interrupted.
+pub fn costs(problem: &mut Problem, free: &[usize], sets: &[f64], monitor: &dyn Monitor) -> Result<Vec<f64>> {
+    if problem.readings() == 0 {
+        return Err(Error::NoReadings);
+    }
+    prepare(problem);
+    problem.weigh(&problem.parameters(), Weighing::Even);
+    let mut assembly = Assembly::new(problem, free, &[], monitor);
+    let mut one = |x: &[f64]| {
+        let mut cost = Cost::default();
+        assembly.rows(x, false, &mut cost).map(|()| cost.0)
+    };
+    sets.chunks_exact(free.len().max(1)).map(&mut one).collect()
+}
+
 /// How the free parameters follow held ones, `-J⁺ ∂r/∂held`: row-major, one row a free parameter.
 ///
 /// # Errors
@@ -141,9 +170,10 @@ pub fn identify(problem: &mut Problem, free: &[usize], known: Known, monitor: &d
     if problem.readings() == 0 {
         return Err(Error::NoReadings);
     }
-    let parameters = problem.arm().parameters();
+    let parameters = problem.parameters();
+    prepare(problem);
     problem.weigh(&parameters, Weighing::Full);
-    let (pins, _) = pins(problem, free, &problem.arm().parameters(), monitor)?;
+    let (pins, _) = pins(problem, free, &parameters, monitor)?;
     let judged = judge(problem, free, &pins, &parameters, monitor)?;
     let sigma = if problem.noise().is_some() { 1.0 } else { ASSUMED_SCATTER_MM };
     Ok(identifiability(problem, problem.arm(), free, &pins, &judged, known, sigma))
@@ -158,10 +188,14 @@ fn identifiability(
     known: Known,
     sigma: f64,
 ) -> Identifiability {
+    let samples = problem.samples(SAMPLE_POSES);
     analyse(
         &judged.decomposition,
         &Question {
-            scene: Scene { arm, free, poses: &problem.sample_poses(SAMPLE_POSES), probes_used: &problem.probes_used() },
+            scene: Scene::new(problem, arm, free, &samples),
+            names: &problem.parameter_names(),
+            units: &problem.parameter_units(),
+            priors: &priors_of(problem, free),
             start: problem.arm(),
             pins,
             symmetries: &judged.symmetries,
@@ -181,7 +215,7 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
     if problem.readings() == 0 {
         return Err(Error::NoReadings);
     }
-    let start = problem.arm().parameters();
+    let start = problem.parameters();
     check_count(problem, free)?;
     let (residuals_start, rms_start_mm) = problem.unweighted(&start);
     let mut solution = solve(problem, free, options, monitor)?;
@@ -191,40 +225,70 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
         problem.arm(),
         &solution.parameters,
         &start,
-        Freedom { free: &is_free, base_free: problem.base_free(), mirror_free: problem.mirror_free() },
+        Freedom {
+            free: &is_free,
+            base_free: problem.base_free(),
+            mirror_free: problem.mirror_free(),
+            zero_offsets_unknown: options.start == Start::Search,
+        },
     );
     solution.parameters = folded.parameters;
     if !folded.steps.is_empty() {
         // a mirror image has its weights mirrored too
         problem.weigh(&solution.parameters, Weighing::Full);
+        problem.discount(solution.factors.as_deref());
     }
-    let judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
+    let whitened = problem.whitened(&solution.parameters);
+    let standing = Standing::of(&whitened, least_scatter(problem));
+    // what the readings determine does not depend on what a loss made of some of them
+    problem.discount(None);
+    let mut judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
     for (unknown, &j) in free.iter().enumerate() {
         if !judged.decomposition.kept.contains(&unknown) {
             solution.parameters[j] = start[j];
         }
     }
-    let arm = problem.arm().with_parameters(&solution.parameters)?;
+    let arm = problem.arm_at(&solution.parameters)?;
+    let priors = priors_of(problem, free);
     let observations = problem.equations();
     let placement_unknowns = problem.placement_unknowns();
-    let degrees_of_freedom = observations.saturating_sub(placement_unknowns + judged.decomposition.rank);
-    let per_dof = (degrees_of_freedom > 0).then(|| solution.report.cost / degrees_of_freedom as f64);
+    let unknowns = placement_unknowns + judged.decomposition.rank;
+    let degrees_of_freedom = (observations + priors.iter().flatten().count()).saturating_sub(unknowns);
+    let per_dof = (degrees_of_freedom > 0).then(|| match problem.loss() {
+        None => solution.report.cost / degrees_of_freedom as f64,
+        Some(_) => standing.pooled_scale(&whitened).powi(2),
+    });
     let stated = problem.noise().is_some();
-    let variance = if stated { 1.0 } else { per_dof.unwrap_or(f64::NAN) };
-    let considered: Vec<f64> = problem.groups().iter().flat_map(|g| g.considered()).map(|c| c.u_mm).collect();
+    let variance = match problem.loss() {
+        Some(_) if degrees_of_freedom == 0 => f64::NAN,
+        Some(loss) => standing.variance(&whitened, loss, degrees_of_freedom as f64),
+        None if stated => 1.0,
+        None => per_dof.unwrap_or(f64::NAN),
+    };
+    if priors.iter().any(Option::is_some) && variance.is_finite() && problem.unit().powi(2) != variance {
+        // priors count as the readings do
+        problem.set_unit(variance.sqrt().max(least_scatter(problem)));
+        judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
+    }
+    let considered = problem.considered_u_mm(free);
+    problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);
     Ok(Fitted {
         identifiability: identifiability(problem, &arm, free, &solution.pins, &judged, options.known, variance.sqrt()),
         covariance: covariance(&judged.decomposition, &judged.triangle, variance, &considered),
+        counted: solution.factors.as_ref().map(|factors| squared(factors)),
         arm,
+        names: problem.parameter_names(),
         start,
-        solution,
         free: free.to_vec(),
         folded: folded.steps,
         observations,
         placement_unknowns,
         degrees_of_freedom,
         chi2_per_dof: per_dof.filter(|_| stated),
+        priors,
+        standing,
+        solution,
         residuals_start,
         residuals,
         rms_start_mm,
@@ -232,14 +296,27 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
     })
 }
 
+fn squared(factors: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    factors.iter().map(|group| group.iter().map(|factor| factor * factor).collect()).collect()
+}
+
+/// For each free parameter, what was known of it before.
+fn priors_of(problem: &Problem, free: &[usize]) -> Vec<Option<(f64, f64)>> {
+    let priors = problem.priors();
+    let of = |j: &usize| priors.iter().find(|prior| prior.parameter == *j).map(|prior| (prior.value, prior.u));
+    free.iter().map(of).collect()
+}
+
 /// More equations than unknowns there must be; unknowns whose columns vanish do not count.
 fn check_count(problem: &mut Problem, free: &[usize]) -> Result<()> {
-    let observations = problem.equations();
+    let known = priors_of(problem, free).iter().flatten().count();
+    let observations = problem.equations() + known;
     let placement_unknowns = problem.placement_unknowns();
     if observations >= placement_unknowns + free.len() {
         return Ok(());
     }
-    let parameters = problem.arm().parameters();
+    let parameters = problem.parameters();
+    prepare(problem);
     problem.weigh(&parameters, Weighing::Full);
     let kept = judge(problem, free, &[], &parameters, &Unwatched)?.decomposition.kept.len();
     let unknowns = placement_unknowns + kept;

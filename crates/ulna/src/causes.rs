@@ -1,8 +1,8 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
-use crate::arm::{Arm, JointModel};
-use crate::kinematics::{jacobian, tip_mm};
-use crate::problem::off_axis_mm;
+use crate::arm::{Arm, JointModel, Unit};
+use crate::kinematics::{Sample, jacobian, tip_mm};
+use crate::problem::Problem;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Kinds of causes.
@@ -20,6 +20,12 @@ pub enum Cause {
     JointStill,
     /// Two successive axes are parallel.
     ParallelAxes,
+    /// The last link and the tip say the same thing twice.
+    RedundantLink,
+    /// The arm was always as warm.
+    TemperatureStill,
+    /// Gravity makes no moment about an axis.
+    NoMoment,
     /// It moves the tip, but not in what was read.
     Coverage,
 }
@@ -34,6 +40,9 @@ impl Cause {
             Cause::ProbeUnused => "probe-unused",
             Cause::JointStill => "joint-still",
             Cause::ParallelAxes => "parallel-axes",
+            Cause::RedundantLink => "redundant-link",
+            Cause::TemperatureStill => "temperature-still",
+            Cause::NoMoment => "no-moment",
             Cause::Coverage => "coverage",
         }
     }
@@ -60,13 +69,29 @@ impl Because {
 /// Where a direction is looked at.
 pub(crate) struct Scene<'a> {
     pub arm: &'a Arm,
-    /// indices of the free parameters
+    /// indices of the free parameters; those behind the arm's are dimensions of artefacts
     pub free: &'a [usize],
-    /// probe and angles of some of the readings
-    pub poses: &'a [(usize, Vec<f64>)],
-    pub probes_used: &'a [bool],
+    /// poses of some of the readings
+    poses: &'a [Sample],
+    probes_used: Vec<bool>,
+    /// lowest and highest temperature above 20 °C
+    warmth_range_k: Option<(f64, f64)>,
 }
 
+impl<'a> Scene<'a> {
+    pub fn new(problem: &Problem, arm: &'a Arm, free: &'a [usize], poses: &'a [Sample]) -> Scene<'a> {
+        let (probes_used, warmth_range_k) = (problem.probes_used(), problem.warmth_range_k());
+        Scene { arm, free, poses, probes_used, warmth_range_k }
+    }
+
+    /// Whether the temperature never changed.
+    fn as_warm(&self) -> bool {
+        self.warmth_range_k.is_none_or(|(low, high)| high - low < STILL_K)
+    }
+}
+
+/// Temperatures closer than this are the same, K.
+const STILL_K: f64 = 1e-3;
 /// A joint that turned less than this has not been moved, rad.
 const STILL_RAD: f64 = 1e-6;
 /// Axes closer to parallel than this are parallel, rad.
@@ -80,8 +105,8 @@ const EXPLAINED: f64 = 1e-7;
 pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
     let takes_part: Vec<usize> =
         scene.free.iter().zip(direction).filter(|(_, d)| **d != 0.0).map(|(&j, _)| j).collect();
-    let joints = scene.arm.joint_parameter_count();
-    let unused = |&j: &usize| j >= joints && !scene.probes_used[(j - joints) / 3];
+    let (joints, geometry) = (scene.arm.joint_parameter_count(), scene.arm.geometry_count());
+    let unused = |&j: &usize| (joints..geometry).contains(&j) && !scene.probes_used[(j - joints) / 3];
     if takes_part.iter().all(unused) {
         let probe = &scene.arm.probes()[(takes_part.first().copied().unwrap_or(joints) - joints) / 3].name;
         return Because {
@@ -91,6 +116,9 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
                 "take readings with probe {probe} (32 poses in one seat are enough once the arm is known), or hold probe.{probe}.*"
             ),
         };
+    }
+    if let Some(because) = of_effects(&takes_part, scene) {
+        return because;
     }
     let motion = Motion::new(direction, arm, scene);
     if let Some(because) = moves_nothing(&motion, &takes_part, arm, scene) {
@@ -121,6 +149,34 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
     }
 }
 
+/// What is said of parameters beyond the geometry that had no chance to show.
+fn of_effects(takes_part: &[usize], scene: &Scene) -> Option<Because> {
+    let units = scene.arm.parameter_units();
+    let beyond = |unit: Unit| takes_part.iter().copied().find(|&j| units.get(j) == Some(&unit));
+    if beyond(Unit::PerKelvin).is_some() && scene.as_warm() {
+        return Some(Because {
+            cause: Cause::TemperatureStill,
+            because: "the temperature was the same in all readings: a warmer link cannot be told from a longer one"
+                .into(),
+            remedy:
+                "take readings at other temperatures, or hold joint.*.expansion (at the material's, in the arm file)"
+                    .into(),
+        });
+    }
+    let bent = beyond(Unit::RadPerNewtonMetre)?;
+    if takes_part.len() > 1 {
+        return None;
+    }
+    let joint = scene.arm.joint_of(bent)? + 1;
+    Some(Because {
+        cause: Cause::NoMoment,
+        because: format!(
+            "gravity makes no moment about the axis of joint {joint}: it is upright, or carries no stated mass"
+        ),
+        remedy: format!("hold joint.{joint}.compliance: nothing depends on it while the arm stands so"),
+    })
+}
+
 /// What is said of a motion of the base.
 pub(crate) fn base_frame() -> Because {
     Because {
@@ -145,14 +201,23 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
     if motion.size > EXPLAINED * motion.effort {
         return None;
     }
-    let joints = scene.arm.joint_parameter_count();
+    let (joints, geometry) = (scene.arm.joint_parameter_count(), scene.arm.geometry_count());
     let last_link = joints - 4;
-    let on_axis = |probe: &crate::arm::Probe| {
-        let length = Vector3::from(probe.tip_mm).norm();
-        off_axis_mm(probe.tip_mm) <= ON_AXIS * length.max(1.0)
-    };
-    let read_on_axis = arm.probes().iter().zip(scene.probes_used).all(|(p, used)| !used || on_axis(p));
-    if takes_part.iter().any(|&j| j >= last_link) && read_on_axis {
+    let of_last = |j: &usize| (last_link..geometry).contains(j);
+    if arm.has_full_last_link() && takes_part.iter().all(of_last) {
+        let n = arm.encoders();
+        return Some(Because {
+            cause: Cause::RedundantLink,
+            because: format!(
+                "the link of joint {n} and the tip are one rigid body: both say where the tip is, twice over"
+            ),
+            remedy: format!(
+                "none is needed, no point depends on it; without full_last_link the tip says it all, or hold joint.{n}.*"
+            ),
+        });
+    }
+    let read_on_axis = (0..arm.probes().len()).all(|p| !scene.probes_used[p] || on_last_axis(arm, p));
+    if takes_part.iter().any(of_last) && read_on_axis {
         return Some(Because {
             cause: Cause::ProbeOnAxis,
             because: "the tip lies on the last axis: turning the last joint moves nothing, so the direction of that axis cannot be seen".into(),
@@ -183,16 +248,29 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
     })
 }
 
+/// Whether a probe's tip does not move when the last joint turns.
+fn on_last_axis(arm: &Arm, probe: usize) -> bool {
+    let tip = Vector3::from(arm.probes()[probe].tip_mm);
+    let q_rad: Vec<f64> = vec![0.0; arm.encoders()];
+    let frames = crate::kinematics::frames(arm, &q_rad);
+    let from_axis = frames[arm.encoders() - 1].inverse() * (frames[arm.encoders()] * nalgebra::Point3::from(tip));
+    from_axis.coords.xy().norm() <= ON_AXIS * from_axis.coords.norm().max(1.0)
+}
+
 /// A joint next to one of these parameters that stands still in all readings.
 fn still_joint(takes_part: &[usize], scene: &Scene) -> Option<usize> {
     let joints = scene.arm.joint_parameter_count();
     let range = |i: usize| {
-        let angles = scene.poses.iter().map(|(_, q)| q[i]);
+        let angles = scene.poses.iter().map(|pose| pose.q_rad[i]);
         let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), q| (low.min(q), high.max(q)));
         high - low
     };
     (0..scene.arm.encoders()).find(|&i| {
-        let concerns = |&j: &usize| j >= joints && i + 1 == scene.arm.encoders() || j / 4 == i || j / 4 + 1 == i;
+        let concerns = |&j: &usize| match scene.arm.joint_of(j) {
+            Some(joint) if j < joints => joint == i || joint + 1 == i,
+            Some(joint) => joint == i,
+            None => j < scene.arm.geometry_count() && i + 1 == scene.arm.encoders(),
+        };
         takes_part.iter().any(concerns) && range(i) < STILL_RAD
     })
 }
@@ -210,16 +288,16 @@ struct Motion {
 impl Motion {
     fn new(direction: &[f64], arm: &Arm, scene: &Scene) -> Motion {
         let (mut tips, mut moves, mut effort) = (Vec::new(), Vec::new(), 0.0);
-        for (probe, q_rad) in scene.poses {
-            let jacobian = jacobian(arm, *probe, q_rad);
+        for sample in scene.poses {
+            let jacobian = jacobian(arm, sample.probe, sample.pose());
             let mut moved = Vector3::zeros();
-            for (&j, &weight) in scene.free.iter().zip(direction) {
+            for (&j, &weight) in scene.free.iter().zip(direction).filter(|(j, _)| **j < arm.parameter_count()) {
                 let part: Vector3<f64> = jacobian.column(j) * weight;
                 moved += part;
                 effort += part.norm_squared();
             }
             moves.push(moved);
-            tips.push(tip_mm(arm, *probe, q_rad).coords);
+            tips.push(tip_mm(arm, sample.probe, sample.pose()).coords);
         }
         let count = moves.len().max(1) as f64;
         Motion {

@@ -69,6 +69,19 @@ pub enum Error {
         /// How many equations are missing.
         missing: usize,
     },
+    /// Too many coordinates of an artefact are uncertain and touched more than once: each is a column of its own.
+    #[error(
+        "artefact {artefact} has {dimensions} coordinates that are uncertain and touched more than once; at most {most} \
+         can be told apart: state u only for the features that matter, or no u, or split the artefact"
+    )]
+    TooManyDimensions {
+        /// The artefact's name.
+        artefact: String,
+        /// How many.
+        dimensions: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// Noise has to be drawn but none was stated.
     #[error("the study states no noise, so none can be drawn: give [noise] encoder or seat")]
     NoNoise,

@@ -20,7 +20,7 @@ const SUSPICIOUS_PIVOT: f64 = 1e-10;
 /// # Errors
 /// [`crate::Error::Interrupted`].
 pub fn pins(problem: &Problem, free: &[usize], parameters: &[f64], monitor: &dyn Monitor) -> Result<(Vec<Pin>, Gram)> {
-    let own = problem.arm().parameters();
+    let own = problem.parameters();
     let start: Vec<f64> = free.iter().map(|&j| own[j]).collect();
     let here: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
     let mut assembly = Assembly::new(problem, free, &[], monitor);

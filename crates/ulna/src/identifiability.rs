@@ -38,6 +38,23 @@ pub struct Known {
     pub angle_rad: f64,
 }
 
+/// What is known of any engineering material: none expands by more than this, 1/K.
+const EXPANSION_PER_K: f64 = 3e-5;
+/// A joint that gives way by more than this for a newton metre is broken, rad.
+const COMPLIANCE_RAD_PER_NM: f64 = 1e-3;
+
+impl Known {
+    /// How well a parameter of this unit is known.
+    fn of(self, unit: Unit) -> f64 {
+        match unit {
+            Unit::Rad => self.angle_rad,
+            Unit::Mm => self.length_mm,
+            Unit::PerKelvin => EXPANSION_PER_K,
+            Unit::RadPerNewtonMetre => COMPLIANCE_RAD_PER_NM,
+        }
+    }
+}
+
 impl Default for Known {
     /// A drawing: 1 mm, 0.01 rad.
     fn default() -> Self {
@@ -64,11 +81,21 @@ pub struct Identifiability {
     pub lost_directions: Vec<Vec<f64>>,
     /// For each free parameter, whether it takes part in a lost direction.
     pub in_lost: Vec<bool>,
+    /// Free parameters of which the readings say next to nothing: what is known of them is their prior.
+    pub from_prior: Vec<String>,
 }
+
+/// An uncertainty that is no less than this part of the prior's is the prior's.
+const NO_NEWS: f64 = 0.95;
 
 /// What the analysis needs to know of the problem.
 pub(crate) struct Question<'a> {
     pub scene: Scene<'a>,
+    /// of all parameters
+    pub names: &'a [String],
+    pub units: &'a [Unit],
+    /// of each free parameter: value and standard uncertainty before
+    pub priors: &'a [Option<(f64, f64)>],
     /// the arm at the start, where the pinned families were found
     pub start: &'a Arm,
     pub pins: &'a [Pin],
@@ -84,8 +111,7 @@ const NEGLIGIBLE_WEIGHT: f64 = 1e-6;
 
 pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Identifiability {
     let count = question.scene.free.len();
-    let all_names = question.scene.arm.parameter_names();
-    let names: Vec<String> = question.scene.free.iter().map(|&j| all_names[j].clone()).collect();
+    let names: Vec<String> = question.scene.free.iter().map(|&j| question.names[j].clone()).collect();
     let (directions, origins): (Vec<_>, Vec<_>) = lost_directions(decomposition, question, count).into_iter().unzip();
     let one = |(direction, origin): (&Vec<f64>, &Origin)| LostDirection {
         combination: combination(direction, &names),
@@ -106,6 +132,7 @@ pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Ide
             (Some(largest), Some(smallest)) => smallest / largest,
             _ => 0.0,
         },
+        from_prior: from_prior(decomposition, question, &names),
         in_lost: (0..count).map(|j| directions.iter().any(|d| d[j] != 0.0)).collect(),
         weak: weak(decomposition, question, &names),
         lost_directions: directions,
@@ -113,6 +140,20 @@ pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Ide
         lost,
         names,
     }
+}
+
+/// Parameters whose uncertainty the readings did not lower.
+fn from_prior(decomposition: &Decomposition, question: &Question, names: &[String]) -> Vec<String> {
+    if question.priors.iter().all(Option::is_none) {
+        return vec![];
+    }
+    let covariance = decomposition.covariance();
+    let count = names.len();
+    let no_news = |&k: &usize| {
+        let after = question.sigma * covariance[k * count + k].sqrt();
+        question.priors[k].is_some_and(|(_, u)| after >= NO_NEWS * u)
+    };
+    (0..count).filter(no_news).map(|k| names[k].clone()).collect()
 }
 
 fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
@@ -193,9 +234,19 @@ fn reduce(rows: &mut [Vec<f64>]) {
     }
 }
 
+/// An uncertainty in words.
+fn two_digits(u: f64) -> String {
+    if (0.01..1e4).contains(&u) { format!("{u:.2}") } else { format!("{u:.1e}") }
+}
+
 /// Singular directions along which a parameter's uncertainty exceeds what was known of it before.
 fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) -> Vec<WeakDirection> {
-    let units = question.scene.arm.parameter_units();
+    let units = question.units;
+    // a prior says how well a parameter was known
+    let known = |j: usize| {
+        let prior = question.priors[j].map(|(_, u)| u);
+        prior.unwrap_or_else(|| question.known.of(units[question.scene.free[j]]))
+    };
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {
         let factor = question.sigma / decomposition.singular_values[i];
@@ -204,11 +255,7 @@ fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) ->
         let mut times_known = vec![0.0; question.scene.free.len()];
         for (a, &j) in decomposition.kept.iter().enumerate() {
             u[j] = factor * vector[a] / decomposition.norms[a];
-            let known = match units[question.scene.free[j]] {
-                Unit::Rad => question.known.angle_rad,
-                Unit::Mm => question.known.length_mm,
-            };
-            times_known[j] = u[j].abs() / known;
+            times_known[j] = u[j].abs() / known(j);
         }
         let leading = (0..u.len()).max_by(|&a, &b| times_known[a].total_cmp(&times_known[b])).unwrap_or(0);
         if u.is_empty() || times_known[leading] <= 1.0 {
@@ -216,18 +263,15 @@ fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) ->
         }
         let share = |&j: &usize| times_known[j] > 0.05 * times_known[leading];
         let unit = units[question.scene.free[leading]];
-        let known = match unit {
-            Unit::Rad => question.known.angle_rad,
-            Unit::Mm => question.known.length_mm,
-        };
+        let known = known(leading);
         result.push(WeakDirection {
             combination: (0..u.len()).filter(share).map(|j| (names[j].clone(), u[j] / u[leading])).collect(),
             u: u[leading].abs(),
             unit,
             because: format!(
-                "the readings determine {} only to {:.2} {}, worse than the {known} {} it is taken to be known to before",
+                "the readings determine {} only to {} {}, worse than the {known} {} it is taken to be known to before",
                 names[leading],
-                u[leading].abs(),
+                two_digits(u[leading].abs()),
                 unit.as_str(),
                 unit.as_str(),
             ),

@@ -14,7 +14,9 @@
 //! | [`identifiability`], [`causes`] | what is lost, in parameters and words | `decomposition` |
 //! | [`pins`], [`families`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
 //! | [`symmetry`] | twins: parameter sets that describe the same readings | `arm` |
-//! | [`solve`], `search` | the way to the minimum | `assembly`, `solver` |
+//! | [`losses`], `robust` | how much outliers count; know no kinematics | |
+//! | [`priors`] | what is known before | |
+//! | [`solve`], `search`, `signs`, `settle` | the way to the minimum | `assembly`, `solver` |
 //! | [`calibrate`] | the fit and all that is judged of it | everything above |
 //! | [`monte_carlo`] | calibrations repeated on new noise | `calibrate` |
 //! | [`propagate`], [`inverse`], [`numdiff`] | uncertainty of a point; postures for a point; a derivative checker | `kinematics` |
@@ -24,8 +26,10 @@
 //! use ulna::calibrate::{Options, fit};
 //! use ulna::kinematics::tip_mm;
 //! use ulna::monitor::Unwatched;
+//! use ulna::kinematics::Angles;
 //! use ulna::problem::Problem;
-//! use ulna::residuals::points::{Features, Frame, PointRows};
+//! use ulna::residuals::TouchRows;
+//! use ulna::residuals::points::{Features, Frame, Uncertainty};
 //!
 //! // two joints and a probe, with a link length that is not quite known
 //! let joint = |a_mm, alpha_rad| Joint {
@@ -38,9 +42,12 @@
 //! // places in the arm's own frame, touched once each
 //! let q_rad: Vec<f64> = (0..30).map(|i| (f64::from(i) * 0.7).sin() * 2.0).collect();
 //! let places: Vec<[f64; 3]> = q_rad.chunks(3).map(|q| tip_mm(&truth, 0, q).into()).collect();
-//! let features = Features { name: "grid", coordinates_mm: &places, u_mm: 0.0, frame: Frame::Arm };
+//! let labels: Vec<String> = (1..=10).map(|k| format!("p{k}")).collect();
+//! let features = Features {
+//!     name: "grid", labels: &labels, coordinates_mm: &places, u: Uncertainty::None, fitted: false, frame: Frame::Arm,
+//! };
 //! let each: Vec<usize> = (0..10).collect();
-//! let rows = PointRows { q_rad: &q_rad, probe: &[0; 10], feature: &each, placement: &[0; 10] };
+//! let rows = TouchRows { poses: Angles::cold(&q_rad), probe: &[0; 10], feature: &each, placement: &[0; 10] };
 //!
 //! let mut problem = Problem::new(nominal, None)?;
 //! problem.add_points(&features, rows)?;
@@ -61,14 +68,19 @@ pub mod families;
 pub mod identifiability;
 pub mod inverse;
 pub mod kinematics;
+pub mod losses;
 pub mod monitor;
 pub mod monte_carlo;
 pub mod numdiff;
 pub mod pins;
+pub mod priors;
 pub mod problem;
 pub mod propagate;
 pub mod residuals;
+pub mod robust;
 mod search;
+mod settle;
+mod signs;
 pub mod simd;
 pub mod solve;
 pub mod solver;

@@ -2,14 +2,15 @@
 
 use crate::arm::Arm;
 use crate::assembly::Assembly;
-use crate::calibrate::judge;
+use crate::calibrate::{Options, fit, judge};
 use crate::covariance::covariance;
 use crate::error::{Error, Result};
 use crate::families::pins;
 use crate::monitor::{Monitor, Stage, Unwatched};
 use crate::pins::Pin;
 use crate::problem::Problem;
-use crate::residuals::{Model, Weighing};
+use crate::residuals::Weighing;
+use crate::solve::prepare;
 use crate::solver::lm::{self, Report, minimize};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -48,12 +49,13 @@ pub struct Repeat<'a> {
 /// No stated noise, or interrupted.
 pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: &dyn Monitor) -> Result<Vec<Run>> {
     let noise = problem.noise().ok_or(Error::NoNoise)?;
-    let truth = Model::new(repeat.truth);
     let mut problem = problem.clone();
     problem.set_arm(based_on(&problem, repeat.truth)?);
-    problem.weigh(&repeat.truth.parameters(), Weighing::Even);
-    let (pins, _) = pins(&problem, free, &repeat.truth.parameters(), monitor)?;
-    let (problem, pins) = (&problem, pins.as_slice());
+    let truth = truth_of(&problem, repeat.truth)?;
+    prepare(&mut problem);
+    problem.weigh(&truth, Weighing::Even);
+    let (pins, _) = pins(&problem, free, &truth, monitor)?;
+    let (problem, pins, truth) = (&problem, pins.as_slice(), truth.as_slice());
     let done = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
     let one = |run: usize| -> Result<Run> {
@@ -61,19 +63,15 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
             return Err(Error::Interrupted);
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(repeat.seed, run as u64));
-        let groups = problem.groups().iter().map(|g| g.redrawn(&truth, noise, &mut rng)).collect();
-        let mut drawn = problem.with_groups(groups);
-        let (mut found, mut report) = descend(&drawn, free, pins, &drawn.arm().parameters())?;
-        if drawn.weighs_directions() {
-            drawn.weigh(&found, Weighing::Full);
-            (found, report) = descend(&drawn, free, pins, &found)?;
-        }
-        let u =
-            if repeat.uncertainties { uncertainties(&drawn, free, pins, &found)? } else { vec![f64::NAN; found.len()] };
+        let mut drawn = problem.redrawn(truth, noise, &mut rng);
+        let run = match drawn.loss() {
+            None => recalibrated(&mut drawn, free, pins, repeat.uncertainties)?,
+            Some(_) => refitted(&mut drawn, free)?,
+        };
         if !monitor.progress(Stage::MonteCarlo, done.fetch_add(1, Ordering::Relaxed), repeat.runs) {
             stopped.store(true, Ordering::Relaxed);
         }
-        Ok(Run { parameters: found, u, converged: report.termination.converged() })
+        Ok(run)
     };
     if repeat.threads <= 1 {
         return (0..repeat.runs).map(one).collect();
@@ -94,6 +92,45 @@ fn based_on(problem: &Problem, truth: &Arm) -> Result<Arm> {
     problem.arm().with_parameters(&parameters)
 }
 
+/// The truth's parameters, artefacts as they are calibrated.
+fn truth_of(problem: &Problem, truth: &Arm) -> Result<Vec<f64>> {
+    let own = problem.parameters();
+    let mut parameters = truth.parameters();
+    if parameters.len() != problem.arm().parameter_count() {
+        return Err(Error::Shape {
+            what: "the true arm's parameters".into(),
+            got: parameters.len(),
+            expected: problem.arm().parameter_count(),
+        });
+    }
+    parameters.extend(&own[parameters.len()..]);
+    Ok(parameters)
+}
+
+/// One calibration by squares: the weights settle in one round.
+fn recalibrated(drawn: &mut Problem, free: &[usize], pins: &[Pin], uncertain: bool) -> Result<Run> {
+    let (mut parameters, mut report) = descend(drawn, free, pins, &drawn.parameters())?;
+    if drawn.weighs_directions() {
+        drawn.weigh(&parameters, Weighing::Full);
+        (parameters, report) = descend(drawn, free, pins, &parameters)?;
+    }
+    let u = if uncertain { uncertainties(drawn, free, pins, &parameters)? } else { vec![f64::NAN; parameters.len()] };
+    Ok(Run { parameters, u, converged: report.termination.converged() })
+}
+
+/// One calibration with a loss: the whole fit, as a study has it.
+fn refitted(drawn: &mut Problem, free: &[usize]) -> Result<Run> {
+    let fitted = fit(drawn, free, &Options { search_starts: 0, ..Options::default() }, &Unwatched)?;
+    let mut u = vec![f64::NAN; fitted.start.len()];
+    for (unknown, &j) in free.iter().enumerate() {
+        if !fitted.identifiability.in_lost[unknown] {
+            u[j] = fitted.covariance[unknown * free.len() + unknown].sqrt();
+        }
+    }
+    let converged = fitted.solution.report.termination.converged();
+    Ok(Run { parameters: fitted.solution.parameters, u, converged })
+}
+
 /// One fit from some parameters, weights as they are: all parameters, and how it ended.
 fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Result<(Vec<f64>, Report)> {
     let mut parameters = from.to_vec();
@@ -109,7 +146,7 @@ fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Res
 /// Standard uncertainty of every parameter; NaN where held or not determined.
 fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[f64]) -> Result<Vec<f64>> {
     let judged = judge(problem, free, pins, parameters, &Unwatched)?;
-    let considered: Vec<f64> = problem.groups().iter().flat_map(|g| g.considered()).map(|c| c.u_mm).collect();
+    let considered = problem.considered_u_mm(free);
     let covariance = covariance(&judged.decomposition, &judged.triangle, 1.0, &considered);
     let lost = judged.decomposition.lost();
     let mut u = vec![f64::NAN; parameters.len()];

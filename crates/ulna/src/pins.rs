@@ -59,17 +59,24 @@ pub(crate) fn growth(problem: &Problem, free: &[usize], values: &[f64]) -> Optio
     if !problem.scale_free() || problem.groups().is_empty() {
         return None;
     }
-    let units = problem.arm().parameter_units();
+    let (arm, units) = (problem.arm(), problem.arm().parameter_units());
     let used = problem.probes_used();
-    let joints = problem.arm().joint_parameter_count();
-    let matters = |j: usize| j < joints || used[(j - joints) / 3];
+    let (joints, geometry) = (arm.joint_parameter_count(), arm.geometry_count());
+    let matters = |j: usize| j < joints || j < geometry && used[(j - joints) / 3];
     // d_1 only lifts the base and so does not hold the size
-    let holds = |j: &usize| units[*j] == Unit::Mm && matters(*j) && *j != 3 && values[*j] != 0.0 && !free.contains(j);
-    if (0..values.len()).any(|j| holds(&j)) {
+    let mut growth: Vec<f64> = (0..values.len())
+        .map(|j| if j < geometry && units[j] == Unit::Mm && matters(j) && j != 3 { values[j] } else { 0.0 })
+        .collect();
+    for (dimension, grows) in problem.growing_dimensions(values) {
+        growth[dimension] = grows;
+    }
+    // a length that is held, or known beforehand, holds the size
+    let priors = problem.priors();
+    let known = |j: usize| !free.contains(&j) || priors.iter().any(|prior| prior.parameter == j);
+    if (0..values.len()).any(|j| growth[j] != 0.0 && known(j)) {
         return None;
     }
-    let grows = |&j: &usize| if units[j] == Unit::Mm && matters(j) && j != 3 { values[j] } else { 0.0 };
-    let lengths = nalgebra::DVector::from_iterator(free.len(), free.iter().map(grows));
+    let lengths = nalgebra::DVector::from_iterator(free.len(), free.iter().map(|&j| growth[j]));
     let norm = lengths.norm();
     (norm > 0.0).then(|| (lengths / norm).as_slice().to_vec())
 }
@@ -83,14 +90,17 @@ pub(crate) fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Opt
     if !problem.base_free() || problem.arm().joints()[0].model == JointModel::Dh {
         return None;
     }
-    let arm = problem.arm().with_parameters(parameters).ok()?;
+    let arm = problem.arm_at(parameters).ok()?;
     let used = problem.probes_used();
     let probes: Vec<usize> = (0..used.len()).filter(|&p| used[p]).collect();
-    let units = arm.parameter_units();
-    let reach = problem.reach_mm();
-    let natural = |j: usize| if units[j] == Unit::Rad { reach } else { 1.0 };
+    let natural = problem.natural_scale();
     let base = problem.base_parameters();
-    let columns: Vec<usize> = (0..free.len()).filter(|&c| !base.contains(&free[c])).collect();
+    let of_geometry = |c: &usize| free[*c] < arm.geometry_count() && !base.contains(&free[*c]);
+    let columns: Vec<usize> = (0..free.len()).filter(of_geometry).collect();
+    let priors = problem.priors();
+    if columns.iter().any(|&c| priors.iter().any(|prior| prior.parameter == free[c])) {
+        return None;
+    }
     // the turn of the base may help: it changes nothing either
     let mut a = DMatrix::zeros(3 * POSTURES, columns.len() + 1);
     let mut b = DVector::zeros(3 * POSTURES);
@@ -100,10 +110,10 @@ pub(crate) fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Opt
         let q_rad: Vec<f64> = (0..arm.encoders()).map(angle).collect();
         let jacobian = jacobian(&arm, probes[row % probes.len()], &q_rad);
         for (k, &c) in columns.iter().enumerate() {
-            let moved = jacobian.column(free[c]) / natural(free[c]);
+            let moved = jacobian.column(free[c]) / natural[free[c]];
             a.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&moved);
         }
-        let turn = jacobian.column(0) / natural(0);
+        let turn = jacobian.column(0) / natural[0];
         a.fixed_view_mut::<3, 1>(3 * row, columns.len()).copy_from(&turn);
         b[3 * row + 2] = 1.0;
     }
@@ -113,7 +123,7 @@ pub(crate) fn lift(problem: &Problem, free: &[usize], parameters: &[f64]) -> Opt
     }
     let mut direction = vec![0.0; free.len()];
     for (k, &c) in columns.iter().enumerate() {
-        direction[c] = solution[k] / natural(free[c]);
+        direction[c] = solution[k] / natural[free[c]];
     }
     Some(direction)
 }

@@ -1,8 +1,8 @@
 //! What uncertain parameters do to a measured point.
 
-use crate::arm::Arm;
+use crate::arm::{Arm, Unit};
 use crate::kinematics::batch::{forward, gradient, scratch_len};
-use crate::kinematics::{Chain, Poses, jacobian, tip_mm};
+use crate::kinematics::{Angles, Chain, Poses, jacobian, tip_mm};
 use crate::numdiff;
 use crate::simd::{Columns, Lanes};
 use pulp::{Arch, Simd, WithSimd};
@@ -12,13 +12,13 @@ const TILE: usize = 256;
 
 /// `J C Jᵀ` of each pose: xx, xy, xz, yy, yz, zz in mm², row-major. `columns` names the parameters that the row-major
 /// covariance is of.
-pub fn tip_covariance(arm: &Arm, probe: usize, q_rad: &[f64], columns: &[usize], covariance: &[f64]) -> Vec<f64> {
-    over_tiles::<6>(arm, probe, q_rad, columns, Quantity::Covariance(covariance))
+pub fn tip_covariance(arm: &Arm, probe: usize, poses: Angles, columns: &[usize], covariance: &[f64]) -> Vec<f64> {
+    over_tiles::<6>(arm, probe, poses, columns, Quantity::Covariance(covariance))
 }
 
 /// How far the tip moves at each pose, mm, for that of the row-major directions (over `columns`) that moves it most.
-pub fn direction_effect(arm: &Arm, probe: usize, q_rad: &[f64], columns: &[usize], directions: &[f64]) -> Vec<f64> {
-    over_tiles::<1>(arm, probe, q_rad, columns, Quantity::Directions(directions))
+pub fn direction_effect(arm: &Arm, probe: usize, poses: Angles, columns: &[usize], directions: &[f64]) -> Vec<f64> {
+    over_tiles::<1>(arm, probe, poses, columns, Quantity::Directions(directions))
 }
 
 /// What is asked of a pose's derivatives.
@@ -33,25 +33,27 @@ enum Quantity<'a> {
 fn over_tiles<const N: usize>(
     arm: &Arm,
     probe: usize,
-    q_rad: &[f64],
+    poses: Angles,
     columns: &[usize],
     quantity: Quantity,
 ) -> Vec<f64> {
     let chain = Chain::new(arm);
-    let (n, joints) = (arm.encoders(), arm.joint_parameter_count());
+    let n = arm.encoders();
     // which of the columns asked about each derivative of the kernel is; the tips of other probes move nothing
-    let asked = |parameter: usize| columns.iter().position(|&c| c == parameter);
-    let place: Vec<Option<usize>> =
-        (0..joints).chain(arm.tip_offset(probe)..arm.tip_offset(probe) + 3).map(asked).chain([None]).collect();
+    let asked = |column: usize| {
+        let parameter = chain.parameter_of(column, probe, arm.probes().len())?;
+        columns.iter().position(|&c| c == parameter)
+    };
+    let place: Vec<Option<usize>> = (0..=chain.turn_column()).map(asked).collect();
     let mut derivatives = Columns::zeros(3 * columns.len(), TILE);
     let mut answers = Columns::zeros(N, TILE);
     let mut scratch = vec![0.0; scratch_len(&chain)];
-    let mut out = Vec::with_capacity(q_rad.len() / n * N);
-    for q in q_rad.chunks(TILE * n) {
-        let rows = q.len() / n;
+    let mut out = Vec::with_capacity(poses.q_rad.len() / n * N);
+    for part in poses.chunks(TILE, n) {
+        let rows = part.q_rad.len() / n;
         Arch::new().dispatch(PropagateOp {
             chain: &chain,
-            poses: &Poses::from_rows(q, n),
+            poses: &Poses::new(part, n),
             tip_mm: arm.probes()[probe].tip_mm,
             place: &place,
             count: columns.len(),
@@ -89,11 +91,18 @@ impl WithSimd for PropagateOp<'_> {
             for component in 0..3 {
                 let mut axis = [zero; 3];
                 axis[component] = Lanes::splat(simd, 1.0);
-                gradient(simd, chain, scratch, axis, |column, value| {
-                    if let Some(at) = place[column] {
-                        derivatives.store(component * count + at, k, value);
-                    }
-                });
+                gradient(
+                    simd,
+                    chain,
+                    scratch,
+                    axis,
+                    #[inline(always)]
+                    |column, value| {
+                        if let Some(at) = place[column] {
+                            derivatives.store(component * count + at, k, value);
+                        }
+                    },
+                );
             }
             match quantity {
                 Quantity::Covariance(covariance) => {
@@ -135,18 +144,34 @@ impl WithSimd for PropagateOp<'_> {
     }
 }
 
-/// Largest |analytic - numerical| derivative of the tip over all parameters and poses, relative to the reach.
-pub fn check_jacobian(arm: &Arm, probe: usize, q_rad: &[f64]) -> f64 {
+/// Largest |analytic - numerical| derivative of the tip over all parameters and poses, relative to the reach (per rad and
+/// mm; for effects, per unit of what moves the tip as far).
+pub fn check_jacobian(arm: &Arm, probe: usize, poses: Angles) -> f64 {
     let x = arm.parameters();
-    let step = vec![1e-3; x.len()];
     let reach = arm.reach_mm(probe);
-    let worst = |q: &[f64]| {
-        let value = |p: &[f64]| match arm.with_parameters(p) {
-            Ok(moved) => tip_mm(&moved, probe, q).coords.as_slice().to_vec(),
-            Err(_) => vec![f64::NAN; 3],
-        };
-        let analytic = jacobian(arm, probe, q).transpose();
-        numdiff::worst_difference(value, &x, &step, analytic.as_slice())
+    // a step that moves the tip by about as much as a thousandth of a radian does
+    let size = |unit: Unit| match unit {
+        Unit::Rad | Unit::Mm => 1.0,
+        Unit::PerKelvin => 1.0 / poses.warmth_k.iter().fold(10.0, |most: f64, t| most.max(t.abs())),
+        Unit::RadPerNewtonMetre => {
+            1.0 / arm.effects().compliance.as_ref().map_or(1.0, |c| c.most_nm(reach)).max(f64::MIN_POSITIVE)
+        }
     };
-    q_rad.chunks_exact(arm.encoders()).map(worst).fold(0.0, f64::max) / reach
+    let sizes: Vec<f64> = arm.parameter_units().into_iter().map(size).collect();
+    let scaled: Vec<f64> = x.iter().zip(&sizes).map(|(x, size)| x / size).collect();
+    let step = vec![1e-3; x.len()];
+    let worst = |row: usize| {
+        let pose = poses.pose(row, arm.encoders());
+        let value = |p: &[f64]| {
+            let parameters: Vec<f64> = p.iter().zip(&sizes).map(|(p, size)| p * size).collect();
+            match arm.with_parameters(&parameters) {
+                Ok(moved) => tip_mm(&moved, probe, pose).coords.as_slice().to_vec(),
+                Err(_) => vec![f64::NAN; 3],
+            }
+        };
+        let mut analytic = jacobian(arm, probe, pose);
+        analytic.column_iter_mut().zip(&sizes).for_each(|(mut column, size)| column *= *size);
+        numdiff::worst_difference(value, &scaled, &step, analytic.transpose().as_slice())
+    };
+    (0..poses.q_rad.len() / arm.encoders()).map(worst).fold(0.0, f64::max) / reach
 }

@@ -25,6 +25,8 @@ pub(crate) struct Searched {
     pub cost: f64,
     /// How many starts were tried.
     pub starts: usize,
+    /// Signs of the encoders there.
+    pub signs: Vec<f64>,
 }
 
 /// How far zero offsets are thrown.
@@ -34,6 +36,16 @@ pub(crate) enum Throw {
     Anywhere,
     /// Nearby first, then farther: the given start ended in a poor minimum.
     Widening,
+}
+
+impl Throw {
+    /// How far at an attempt, rad.
+    pub fn width(self, attempt: usize) -> f64 {
+        match self {
+            Throw::Anywhere => PI,
+            Throw::Widening => [0.3, 0.6, 1.0, 1.5, 2.2, PI][attempt.min(59) / 10],
+        }
+    }
 }
 
 /// How to search.
@@ -54,6 +66,10 @@ const AGREEING_POOR: usize = 40;
 /// Costs that differ by less than this part belong to the same minimum: starts are given up before the last digits.
 const SAME_MINIMUM: f64 = 1e-4;
 
+/// A minimum that leaves so small a part of what the next best of several leaves is the arm: no accident comes so near.
+const FAR_BETTER: f64 = 1e-4;
+const SEVERAL: usize = 10;
+
 pub(crate) fn search(
     problem: &Problem,
     free: &[usize],
@@ -62,10 +78,13 @@ pub(crate) fn search(
     plan: Plan,
     monitor: &dyn Monitor,
 ) -> Result<Searched> {
-    let thin = problem.thinned(READINGS);
+    let thin = problem.for_search(READINGS);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
     let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
     if !sizeless {
-        return search_over(&thin, free, pins, given, plan, monitor);
+        return search_over(thin, free, pins, given, plan, monitor, |thin, attempt, x| {
+            throw(thin, free, plan.throw.width(attempt), x, &mut rng);
+        });
     }
     // with no length known, most starts end in arms that shrink to a point: the links keep theirs while zero offsets are sought
     let units = problem.arm().parameter_units();
@@ -74,7 +93,9 @@ pub(crate) fn search(
     let part: Vec<usize> = (0..free.len()).filter(sought).collect();
     let part_free: Vec<usize> = part.iter().map(|&k| free[k]).collect();
     let part_given: Vec<f64> = part.iter().map(|&k| given[k]).collect();
-    let found = search_over(&thin, &part_free, &[], &part_given, plan, monitor)?;
+    let found = search_over(thin, &part_free, &[], &part_given, plan, monitor, |thin, attempt, x| {
+        throw(thin, &part_free, plan.throw.width(attempt), x, &mut rng);
+    })?;
     let mut x = given.to_vec();
     for (&k, value) in part.iter().zip(found.x) {
         x[k] = value;
@@ -82,53 +103,62 @@ pub(crate) fn search(
     Ok(Searched { x, ..found })
 }
 
-/// The search over some parameters of thinned readings.
-fn search_over(
-    thin: &Problem,
+/// Zero offsets thrown by up to `width`, rad.
+pub(crate) fn throw(thin: &Problem, free: &[usize], width: f64, x: &mut [f64], rng: &mut Xoshiro256PlusPlus) {
+    for (value, &j) in x.iter_mut().zip(free) {
+        if is_zero_offset(thin, j) {
+            *value += rng.random_range(-width..width);
+        }
+    }
+}
+
+/// The search over some parameters of thinned readings. `throw` makes a start of the given one, and may change the arm's
+/// signs.
+pub(crate) fn search_over(
+    mut thin: Problem,
     free: &[usize],
     pins: &[Pin],
     given: &[f64],
     plan: Plan,
     monitor: &dyn Monitor,
+    mut throw: impl FnMut(&mut Problem, usize, &mut [f64]),
 ) -> Result<Searched> {
-    let mut assembly = Assembly::new(thin, free, pins, monitor);
     let options = Options { max_iterations: ITERATIONS, ..Options::default() };
     let quiet = Quiet(monitor);
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
+    let descend = |thin: &Problem, x: &mut [f64]| -> Result<(f64, f64)> {
+        let mut assembly = Assembly::new(thin, free, pins, monitor);
+        let cost = minimize(&mut assembly, x, &options, &quiet)?.cost;
+        Ok((cost, assembly.negligible_cost()))
+    };
     let mut x = given.to_vec();
-    let cost_given = minimize(&mut assembly, &mut x, &options, &quiet)?.cost;
-    let mut best = Searched { x, cost: cost_given, starts: 1 };
-    let mut agreeing = 1;
+    let (cost, negligible) = descend(&thin, &mut x)?;
+    let mut best = Searched { x, cost, starts: 1, signs: thin.arm().signs().collect() };
+    let (mut agreeing, mut runner_up) = (1, f64::MAX);
     let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
-    let start = thin.arm().parameters();
+    let start = thin.parameters();
     for attempt in 0..plan.most_starts {
         if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
             return Err(Error::Interrupted);
         }
-        let width = match plan.throw {
-            Throw::Anywhere => PI,
-            Throw::Widening => [0.3, 0.6, 1.0, 1.5, 2.2, PI][attempt.min(59) / 10],
-        };
         let mut x = given.to_vec();
-        for (value, &j) in x.iter_mut().zip(free) {
-            if is_zero_offset(thin, j) {
-                *value += rng.random_range(-width..width);
-            }
-        }
-        let report = minimize(&mut assembly, &mut x, &options, &quiet)?;
+        throw(&mut thin, attempt, &mut x);
+        let (cost, _) = descend(&thin, &mut x)?;
         best.starts += 1;
-        let tie = SAME_MINIMUM * best.cost + assembly.negligible_cost();
-        if report.cost <= best.cost + tie {
-            agreeing = if report.cost < best.cost - tie { 1 } else { agreeing + 1 };
+        let tie = SAME_MINIMUM * best.cost + negligible;
+        if cost <= best.cost + tie {
+            agreeing = if cost < best.cost - tie { 1 } else { agreeing + 1 };
         }
-        if report.cost < best.cost {
-            best.x = x;
-            best.cost = report.cost;
+        if (cost - best.cost).abs() > tie {
+            runner_up = runner_up.min(cost.max(best.cost));
+        }
+        if cost < best.cost {
+            best = Searched { x, cost, signs: thin.arm().signs().collect(), ..best };
         }
         // the noise as stated, or rounding, explains it; or several starts found the same
         let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
-        let enough = if poor(thin, &start, best.cost) { AGREEING_POOR } else { AGREEING };
-        if explained || best.cost <= assembly.negligible_cost() || agreeing >= enough {
+        let enough = if poor(&thin, &start, best.cost) { AGREEING_POOR } else { AGREEING };
+        let far_better = best.starts >= SEVERAL && best.cost < FAR_BETTER * runner_up;
+        if explained || best.cost <= negligible || agreeing >= enough || far_better {
             break;
         }
     }
@@ -138,7 +168,7 @@ fn search_over(
 /// Whether the joints of an arm hardly move its tip any more, compared with the problem's own arm: readings of seats that
 /// know no length are met exactly by a tip that nothing moves.
 pub(crate) fn collapsed(problem: &Problem, parameters: &[f64]) -> bool {
-    mobility(problem, parameters) < COLLAPSED * mobility(problem, &problem.arm().parameters())
+    mobility(problem, parameters) < COLLAPSED * mobility(problem, &problem.parameters())
 }
 
 /// An arm whose joints move its tip by less than this part of what they did before has collapsed.
@@ -146,11 +176,11 @@ const COLLAPSED: f64 = 0.3;
 
 /// How far the tip moves with its joints, mm/rad, root mean square over some of the readings.
 fn mobility(problem: &Problem, parameters: &[f64]) -> f64 {
-    let Ok(arm) = problem.arm().with_parameters(parameters) else {
+    let Ok(arm) = problem.arm_at(parameters) else {
         return 0.0;
     };
-    let poses = problem.sample_poses(40);
-    let moved = poses.iter().map(|(probe, q_rad)| encoder_jacobian(&arm, *probe, q_rad).norm_squared());
+    let poses = problem.samples(40);
+    let moved = poses.iter().map(|pose| encoder_jacobian(&arm, pose.probe, pose.pose()).norm_squared());
     (moved.sum::<f64>() / poses.len().max(1) as f64).sqrt()
 }
 

@@ -9,6 +9,8 @@ use crate::pins::{Kind, Pin};
 use crate::problem::Problem;
 use crate::residuals::Weighing;
 use crate::search::{Plan, Throw, collapsed, is_zero_offset, poor, search};
+use crate::settle::Settling;
+use crate::signs;
 use crate::solver::LeastSquares;
 use crate::solver::gram::{Cost, Gram};
 use crate::solver::lm::{self, Report, Termination, minimize, minimize_from};
@@ -34,13 +36,22 @@ pub struct Options {
     pub seed: u64,
     /// Most starts of a search.
     pub search_starts: usize,
+    /// Joints whose encoder signs are not known either, a bit each: find them.
+    pub unknown_signs: u64,
     /// What is known before.
     pub known: Known,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { start: Start::Given, max_iterations: 200, seed: 0, search_starts: 2000, known: Known::default() }
+        Options {
+            start: Start::Given,
+            max_iterations: 200,
+            seed: 0,
+            search_starts: 2000,
+            unknown_signs: 0,
+            known: Known::default(),
+        }
     }
 }
 
@@ -56,7 +67,7 @@ pub enum SearchReason {
 /// Where the fit ended, without judgement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// All parameters of the arm.
+    /// All parameters of the problem.
     pub parameters: Vec<f64>,
     /// How it ended.
     pub report: Report,
@@ -66,18 +77,22 @@ pub struct Solution {
     pub search_reason: Option<SearchReason>,
     /// Directions held at their start because the readings do not determine them.
     pub pins: Vec<Pin>,
+    /// What a loss makes of each reading, group by group: the root of what it counts.
+    pub factors: Option<Vec<Vec<f64>>>,
+    /// Sets of joints that may all count the other way: the readings and the nominal arm do not tell.
+    pub undecided_signs: Vec<Vec<usize>>,
 }
 
 /// Above this many readings a fit starts from where a fit to some of them ends.
 const MANY: usize = 20_000;
 const PART: usize = 2_000;
-/// Weights depend on the arm; they are taken anew until the cost settles, at most so often.
-const REWEIGHINGS: usize = 4;
 /// A family of parameters that was pinned because the start could not tell its members apart is let go where that
 /// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test).
 const SIGNIFICANT: f64 = 4.0;
+/// Scatter of a reading taken for granted before there is a fit to show it, mm.
+pub(crate) const ASSUMED_SCATTER_MM: f64 = 0.02;
 
-/// Finds the free parameters that explain the readings best.
+/// Finds the free parameters that explain the readings best. Signs that were found stay with the problem's arm.
 ///
 /// # Errors
 /// No readings, or interrupted.
@@ -85,39 +100,62 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
     if problem.readings() == 0 {
         return Err(Error::NoReadings);
     }
-    let start = problem.arm().parameters();
+    let start = problem.parameters();
+    prepare(problem);
     problem.weigh(&start, Weighing::Even);
-    let (pins, gram) = pins(problem, free, &start, monitor)?;
+    // what an arm does beyond its geometry is small: it is sought from where the geometry is found
+    let geometry: Vec<usize> = free.iter().copied().filter(|&j| j < problem.arm().geometry_count()).collect();
+    let (mut geometry_pins, gram) = pins(problem, &geometry, &start, monitor)?;
     let cost_start = gram.cost();
-    let x = free.iter().map(|&j| start[j]).collect();
     let options_lm = lm::Options { max_iterations: options.max_iterations, ..lm::Options::default() };
-    let mut way = Way { problem, free, monitor, options: options_lm, start, pins, x };
     let plan = |throw| Plan { throw, most_starts: options.search_starts, seed: options.seed };
-    let given = way.x.clone();
-    let (mut searched_starts, mut search_reason) = (0, None);
+    let given: Vec<f64> = geometry.iter().map(|&j| start[j]).collect();
+    let (mut searched_starts, mut search_reason, mut undecided_signs) = (0, None, vec![]);
+    let can_search = options.search_starts > 0 && geometry.iter().any(|&j| is_zero_offset(problem, j));
 
-    let can_search = options.search_starts > 0 && free.iter().any(|&j| is_zero_offset(way.problem, j));
-
-    let mut report = if options.start == Start::Search && can_search {
-        let found = search(way.problem, free, &way.pins, &given, plan(Throw::Anywhere), monitor)?;
-        (way.x, searched_starts, search_reason) = (found.x, found.starts, Some(SearchReason::Asked));
-        way.descend()?
+    let mut here = start.clone();
+    let place = |here: &mut Vec<f64>, x: &[f64]| geometry.iter().zip(x).for_each(|(&j, &value)| here[j] = value);
+    let mut descended = None;
+    if options.unknown_signs != 0 && can_search {
+        let found = signs::search(problem, &geometry, &given, options.unknown_signs, plan(Throw::Anywhere), monitor)?;
+        problem.set_arm(problem.arm().with_signs(&found.signs));
+        place(&mut here, &found.x);
+        (searched_starts, search_reason) = (found.starts, Some(SearchReason::Asked));
+        undecided_signs = found.undecided;
+        geometry_pins = pins(problem, &geometry, &start, monitor)?.0;
+    } else if options.start == Start::Search && can_search {
+        let found = search(problem, &geometry, &geometry_pins, &given, plan(Throw::Anywhere), monitor)?;
+        place(&mut here, &found.x);
+        (searched_starts, search_reason) = (found.starts, Some(SearchReason::Asked));
     } else {
-        way.first_descent(gram)?
+        let mut first = Way::new(problem, &geometry, monitor, options_lm, &here, geometry_pins.clone());
+        descended = Some(first.first_descent(gram)?);
+        here = first.parameters();
+    }
+    let whole_pins =
+        if geometry.len() == free.len() { geometry_pins.clone() } else { pins(problem, free, &start, monitor)?.0 };
+    let mut way = Way::new(problem, free, monitor, options_lm, &here, whole_pins);
+    let mut report = match descended.filter(|_| geometry.len() == free.len()) {
+        Some(report) => report,
+        None => way.descend()?,
     };
+    way.discount_outliers(&mut report)?;
     way.release(&mut report)?;
     if search_reason.is_none() && can_search && poor(way.problem, &way.parameters(), report.cost) {
-        let found = search(way.problem, free, &way.pins, &given, plan(Throw::Widening), monitor)?;
+        let found = search(way.problem, &geometry, &geometry_pins, &given, plan(Throw::Widening), monitor)?;
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::PoorMinimum));
-        let first = std::mem::replace(&mut way.x, found.x);
-        let second = way.descend()?;
+        let mut there = start.clone();
+        place(&mut there, &found.x);
+        let first = std::mem::replace(&mut way.x, free.iter().map(|&j| there[j]).collect());
+        let mut second = way.descend()?;
+        way.discount_outliers(&mut second)?;
         if second.cost < report.cost {
             report = second;
         } else {
             way.x = first;
         }
     }
-    way.reweigh(&mut report)?;
+    way.settle(&mut report)?;
     let sizeless = way.pins.iter().any(|p| p.kind == Kind::Growth);
     let collapsed = sizeless && collapsed(way.problem, &way.parameters());
     let ended = report.termination.converged() || search_reason.is_some();
@@ -125,7 +163,14 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;
-    Ok(Solution { parameters: way.parameters(), report, searched_starts, search_reason, pins: way.pins })
+    let (parameters, pins, factors) = (way.parameters(), way.pins, way.factors);
+    Ok(Solution { parameters, report, searched_starts, search_reason, pins, factors, undecided_signs })
+}
+
+/// Forgets what an earlier fit left: its loss's weights, and the scatter by which priors are weighed.
+pub(crate) fn prepare(problem: &mut Problem) {
+    problem.discount(None);
+    problem.set_unit(if problem.noise().is_some() { 1.0 } else { ASSUMED_SCATTER_MM });
 }
 
 /// A fit on its way.
@@ -134,14 +179,28 @@ struct Way<'a> {
     free: &'a [usize],
     monitor: &'a dyn Monitor,
     options: lm::Options,
-    /// all parameters at the start
+    /// all parameters, those that are not free as they stay
     start: Vec<f64>,
     pins: Vec<Pin>,
     /// where it is: the free parameters
     x: Vec<f64>,
+    /// what a loss made of each reading last
+    factors: Option<Vec<Vec<f64>>>,
 }
 
-impl Way<'_> {
+impl<'a> Way<'a> {
+    fn new(
+        problem: &'a mut Problem,
+        free: &'a [usize],
+        monitor: &'a dyn Monitor,
+        options: lm::Options,
+        here: &[f64],
+        pins: Vec<Pin>,
+    ) -> Way<'a> {
+        let x = free.iter().map(|&j| here[j]).collect();
+        Way { problem, free, monitor, options, start: here.to_vec(), pins, x, factors: None }
+    }
+
     fn parameters(&self) -> Vec<f64> {
         let mut parameters = self.start.clone();
         for (&j, &value) in self.free.iter().zip(&self.x) {
@@ -193,7 +252,8 @@ impl Way<'_> {
         let pinned = (std::mem::replace(&mut self.pins, kept), self.x.clone());
         let released = self.descend()?;
         let unknowns = self.problem.placement_unknowns() + self.free.len();
-        let dof = self.problem.equations().saturating_sub(unknowns).max(1);
+        let known = self.problem.equations() + self.problem.priors().len();
+        let dof = known.saturating_sub(unknowns).max(1);
         let variance = if self.problem.noise().is_some() { 1.0 } else { released.cost / dof as f64 };
         if report.cost - released.cost > SIGNIFICANT * families as f64 * variance {
             *report = added(*report, released);
@@ -203,20 +263,34 @@ impl Way<'_> {
         Ok(())
     }
 
+    /// Where a loss is asked for: lets it weigh the readings, outliers less, until that changes nothing, all directions
+    /// still alike.
+    fn discount_outliers(&mut self, report: &mut Report) -> Result<()> {
+        if self.problem.loss().is_some() { self.settle_by(report, Weighing::Even) } else { Ok(()) }
+    }
+
     /// Takes the weights at the solution, now by direction, and goes on, until that changes nothing.
-    fn reweigh(&mut self, report: &mut Report) -> Result<()> {
-        if !self.problem.weighs_encoders() || self.free.is_empty() {
+    fn settle(&mut self, report: &mut Report) -> Result<()> {
+        self.settle_by(report, Weighing::Full)
+    }
+
+    fn settle_by(&mut self, report: &mut Report, how: Weighing) -> Result<()> {
+        let Some(mut settling) = Settling::new(self.problem, self.free, self.pins.len(), how) else {
             return Ok(());
-        }
-        for _ in 0..REWEIGHINGS {
-            self.problem.weigh(&self.parameters(), Weighing::Full);
+        };
+        loop {
+            settling.weigh(self.problem, &self.parameters(), report.cost);
+            let before = self.x.clone();
             let again = self.descend()?;
             *report = added(*report, again);
-            if again.iterations == 0 || again.cost_start - again.cost < 1e-6 * again.cost {
-                break;
+            if let Some(settled) = settling.ended(&again, &before, &self.x) {
+                self.factors = settling.factors;
+                if !settled {
+                    report.termination = Termination::MaxIterations;
+                }
+                return Ok(());
             }
         }
-        Ok(())
     }
 }
 

@@ -28,25 +28,17 @@ pub struct Freedom<'a> {
     pub base_free: bool,
     /// The mirror image explains the readings as well.
     pub mirror_free: bool,
+    /// Nothing is known of the zero offsets: those of the nominal arm do not count.
+    pub zero_offsets_unknown: bool,
 }
 
 /// Folds `parameters` to the twin nearest to `nominal`; angles come out within π of nominal where they are free.
 pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) -> Folded {
     let joints = arm.joints().len();
-    let units = arm.parameter_units();
-    let probes = 0..arm.probes().len();
-    let reach = probes.map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max);
-    let distance = |p: &[f64]| -> f64 {
-        let each = p.iter().zip(nominal).zip(&units).enumerate();
-        each.map(|(j, ((value, start), unit))| match unit {
-            Unit::Rad if freedom.base_free && j == 0 => 0.0,
-            Unit::Rad => (reach * wrap(value - start)).powi(2),
-            Unit::Mm => (value - start).powi(2),
-        })
-        .sum()
-    };
+    // what is beyond the geometry has no twin
+    let units = &arm.parameter_units()[..arm.geometry_count()];
     let allowed = |p: &[f64]| {
-        p.iter().zip(parameters).zip(&units).enumerate().all(|(j, ((new, old), unit))| {
+        p.iter().zip(parameters).zip(units).enumerate().all(|(j, ((new, old), unit))| {
             let moved = if *unit == Unit::Rad { wrap(new - old).abs() } else { (new - old).abs() };
             freedom.free[j] || moved < 1e-12 || (freedom.base_free && matters_not(arm, j))
         })
@@ -65,11 +57,12 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
         std::iter::once(0).chain((0..joints.min(63)).map(|i| 1 << i)).collect()
     };
     let mirrors: &[bool] = if freedom.mirror_free { &[false, true] } else { &[false] };
-    let mut best = (distance(parameters), 0, false);
+    let distance = Distance::new(arm, nominal, freedom);
+    let mut best = (distance.of(parameters), 0, false);
     for &mirror in mirrors {
         for &flips in &candidates {
             let p = twin(flips, mirror);
-            let d = distance(&p);
+            let d = distance.of(&p);
             if d < best.0 * (1.0 - 1e-12) && allowed(&p) {
                 best = (d, flips, mirror);
             }
@@ -80,7 +73,7 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
     for (j, value) in folded.iter_mut().enumerate() {
         if !freedom.free[j] || (freedom.base_free && matters_not(arm, j)) {
             *value = parameters[j];
-        } else if units[j] == Unit::Rad {
+        } else if j < arm.geometry_count() && units[j] == Unit::Rad {
             *value = nominal[j] + wrap(*value - nominal[j]);
         }
     }
@@ -90,6 +83,40 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
         steps.push("mirror".into());
     }
     Folded { parameters: folded, steps }
+}
+
+/// How far arms are from a nominal one, mm²: lengths as they are, angles at the end of the arm's reach.
+pub(crate) struct Distance<'a> {
+    nominal: &'a [f64],
+    /// of each parameter of the geometry: mm for a unit of it, and whether it is an angle; 0 for what does not matter
+    scale: Vec<(f64, bool)>,
+}
+
+impl<'a> Distance<'a> {
+    pub fn new(arm: &Arm, nominal: &'a [f64], freedom: Freedom) -> Distance<'a> {
+        let reach = (0..arm.probes().len()).map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max);
+        let zero_offset = |j: usize| j < arm.joint_parameter_count() && j.is_multiple_of(4);
+        let matters = |j: usize| {
+            let base = freedom.base_free && matters_not(arm, j);
+            !(base || freedom.zero_offsets_unknown && zero_offset(j))
+        };
+        let units = arm.parameter_units().into_iter().take(arm.geometry_count()).enumerate();
+        let scale = units.map(|(j, unit)| match unit {
+            _ if !matters(j) => (0.0, false),
+            Unit::Rad => (reach, true),
+            _ => (1.0, false),
+        });
+        Distance { nominal, scale: scale.collect() }
+    }
+
+    pub fn of(&self, parameters: &[f64]) -> f64 {
+        let each = parameters.iter().zip(self.nominal).zip(&self.scale);
+        each.map(|((value, start), &(scale, angle))| {
+            let off = value - start;
+            (scale * if angle { wrap(off) } else { off }).powi(2)
+        })
+        .sum()
+    }
 }
 
 /// theta0 and d of the first joint only move the base.
@@ -167,7 +194,7 @@ mod tests {
     fn every_twin_folds_back() {
         let arm = samples::table2(10.0);
         let nominal = arm.parameters();
-        let all = Freedom { free: &[true; 27], base_free: true, mirror_free: true };
+        let all = Freedom { free: &[true; 27], base_free: true, mirror_free: true, zero_offsets_unknown: false };
         for flips in 0..64 {
             let mut p = nominal.clone();
             (0..6).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(&arm, i, &mut p));

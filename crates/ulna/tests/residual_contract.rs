@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{KINDS, any_arm, noises, rng};
+use common::{KINDS, any_arm, any_effects, any_full_arm, noises, rng};
+use ulna::arm::Arm;
 use ulna::assembly::Assembly;
 use ulna::families::pins;
 use ulna::monitor::Unwatched;
@@ -14,18 +15,29 @@ use ulna::solver::LeastSquares;
 use ulna::solver::gram::{Cost, Gram};
 use ulna::solver::triangle::Triangle;
 
-/// Calls `check` for every kind under every noise, at an arm with residuals of tens of millimetres.
+/// The arms that every kind must be right for: plain, with all effects, and with a full last link.
+fn arms() -> [(&'static str, Arm); 3] {
+    let mut rng = rng(17);
+    let plain = any_arm(&mut rng, 6);
+    let mut effects = any_effects(&mut rng, 6);
+    // upright, so that turning the base turns nothing against gravity
+    effects.compliance.iter_mut().for_each(|compliance| compliance.gravity = [0.0, 0.0, -1.0]);
+    let full = any_full_arm(&mut rng, 5);
+    [("plain", plain.clone()), ("effects", plain.with_effects(effects).unwrap()), ("full last link", full)]
+}
+
+/// Calls `check` for every kind under every noise, at arms with residuals of tens of millimetres.
 fn for_all(check: impl Fn(&str, &Problem, &[usize])) {
-    for (kind, add) in KINDS {
-        for (noise_label, noise) in noises(6) {
-            let mut rng = rng(17);
-            let arm = any_arm(&mut rng, 6);
-            let mut problem = Problem::new(arm, noise).unwrap();
-            add(&mut problem, &mut rng);
-            let start = problem.arm().parameters();
-            problem.weigh(&start, Weighing::Full);
-            let free: Vec<usize> = (0..start.len()).collect();
-            check(&format!("{kind}, {noise_label}"), &problem, &free);
+    for (arm_label, arm) in arms() {
+        for (kind, add) in KINDS {
+            for (noise_label, noise) in noises(arm.encoders()) {
+                let mut problem = Problem::new(arm.clone(), noise).unwrap();
+                add(&mut problem, &mut rng(18));
+                let start = problem.parameters();
+                problem.weigh(&start, Weighing::Full);
+                let free: Vec<usize> = (0..start.len()).collect();
+                check(&format!("{arm_label}, {kind}, {noise_label}"), &problem, &free);
+            }
         }
     }
 }
@@ -39,11 +51,12 @@ fn cost(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
 #[test]
 fn gradient_is_the_derivative_of_the_cost() {
     for_all(|label, problem, free| {
-        let x = problem.arm().parameters();
+        let x = problem.parameters();
         let mut gram = Gram::new(x.len());
         let mut assembly = Assembly::new(problem, free, &[], &Unwatched);
         assembly.rows(&x, true, &mut gram).unwrap();
-        assert!((gram.cost() - cost(problem, free, &x)).abs() < 1e-12 * gram.cost(), "{label}: cost");
+        let alone = cost(problem, free, &x);
+        assert!((gram.cost() - alone).abs() < 1e-12 * alone, "{label}: cost {alone:e}, {:e}", gram.cost());
 
         // the base's own parameters have no column where nothing fixes the base
         let base = problem.base_parameters();
@@ -71,7 +84,7 @@ fn gradient_is_the_derivative_of_the_cost() {
 #[test]
 fn triangle_and_normal_equations_agree() {
     for_all(|label, problem, free| {
-        let x = problem.arm().parameters();
+        let x = problem.parameters();
         let mut assembly = Assembly::new(problem, free, &[], &Unwatched);
         let (mut gram, mut triangle) = (Gram::new(x.len()), Triangle::new(x.len()));
         assembly.rows(&x, true, &mut gram).unwrap();
@@ -93,10 +106,11 @@ fn turning_the_base_changes_no_cost_of_what_stands_freely() {
             // weights taken in base directions stay behind when the base turns
             return;
         }
-        let x = problem.arm().parameters();
+        let x = problem.parameters();
         let mut turned = x.clone();
         turned[0] += 0.7;
-        turned[3] += 55.0;
+        // a warm link lifts by more where it is longer
+        turned[3] += if problem.arm().effects().expansion.is_some() { 0.0 } else { 55.0 };
         let (before, after) = (cost(problem, free, &x), cost(problem, free, &turned));
         assert!((before - after).abs() < 1e-10 * before, "{label}: {before} {after}");
     });
@@ -110,7 +124,7 @@ fn a_part_of_the_readings_has_the_whole_ones_rank() {
             assert!(thin.len() <= group.len(), "{label}");
             assert_eq!(thin.placement_unknowns(), group.placement_unknowns(), "{label}");
         }
-        let (pinned, _) = pins(problem, free, &problem.arm().parameters(), &Unwatched).unwrap();
+        let (pinned, _) = pins(problem, free, &problem.parameters(), &Unwatched).unwrap();
         assert_eq!(
             pinned.iter().filter(|p| p.kind == Kind::Growth).count(),
             usize::from(problem.scale_free()),
@@ -125,7 +139,11 @@ fn what_is_redrawn_without_noise_is_met_exactly() {
         let model = ulna::residuals::Model::new(problem.arm());
         let silent = ulna::residuals::Noise::default();
         for group in problem.groups() {
-            let exact = group.redrawn(&model, &silent, &mut rng(3)).unweighted(&model);
+            let dimensions_mm: Vec<f64> = group.dimensions().iter().map(|d| d.value_mm).collect();
+            let at = ulna::residuals::At { model: &model, dimensions_mm: &dimensions_mm };
+            let exact = group.redrawn(at, &silent, &mut rng(3));
+            // its dimensions were calibrated anew: what it is has not changed
+            let exact = exact.unweighted(at);
             let worst = exact.residuals_mm.iter().fold(0.0_f64, |w, r| w.max(r.abs()));
             assert!(worst < 1e-9, "{label}: {worst:e}, {} free", free.len());
         }

@@ -1,5 +1,7 @@
-//! An arm's geometry as the kernels use it.
+//! An arm's geometry, and what it does beyond it, as the kernels use them.
 
+use super::batch::compliance::Carried;
+use super::batch::harmonics::Amplitudes;
 use crate::arm::{Arm, JointModel};
 
 /// One joint's numbers as the kernels use them.
@@ -15,12 +17,22 @@ pub(crate) struct Link {
     pub(crate) d: f64,
     /// cosine and sine of beta, for a Hayati joint
     pub(crate) beta: Option<(f64, f64)>,
+    /// a last joint that only turns the tip
+    pub(crate) bare: bool,
 }
 
 /// An arm's geometry with its sines and cosines taken, ready for the kernels.
+///
+/// Its derivatives come in columns: four for each joint with a link, x, y, z of the tip, one for each parameter of the
+/// effects, and, behind all parameters, the turn of the last joint.
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(crate) links: Vec<Link>,
+    pub(super) harmonics: Option<Amplitudes>,
+    /// ε of each joint's link, 1/K
+    pub(super) expansion: Option<Vec<f64>>,
+    pub(super) compliance: Option<Carried>,
+    effect_columns: usize,
 }
 
 impl Chain {
@@ -36,8 +48,9 @@ impl Chain {
             a: j.a_mm,
             d: if j.model == JointModel::Dh { j.d_mm } else { 0.0 },
             beta: (j.model == JointModel::Hayati).then(|| (j.beta_rad.cos(), j.beta_rad.sin())),
+            bare: false,
         });
-        let last = Link {
+        let bare = Link {
             theta0: 0.0,
             sign: arm.signs().last().unwrap_or(1.0),
             cos_theta0: 1.0,
@@ -47,13 +60,21 @@ impl Chain {
             a: 0.0,
             d: 0.0,
             beta: None,
+            bare: true,
         };
-        Chain { links: links.chain([last]).collect() }
+        let effects = arm.effects();
+        Chain {
+            links: links.chain((!arm.has_full_last_link()).then_some(bare)).collect(),
+            harmonics: effects.harmonics.as_ref().map(Amplitudes::new),
+            expansion: effects.expansion.as_ref().map(|e| e.per_kelvin.clone()),
+            compliance: effects.compliance.as_ref().map(Carried::new),
+            effect_columns: effects.count(),
+        }
     }
 
-    /// Takes other numbers for the joints, four a joint in the order of [`Arm::parameters`].
-    pub fn set_joint_parameters(&mut self, parameters: &[f64]) {
-        for (link, p) in self.links.iter_mut().zip(parameters.chunks_exact(4)) {
+    /// Takes other numbers for the joints, four a joint in the order of [`Arm::parameters`], and for the effects.
+    pub fn set_parameters(&mut self, joints: &[f64], effects: &[f64]) {
+        for (link, p) in self.links.iter_mut().zip(joints.chunks_exact(4)) {
             link.theta0 = p[0];
             (link.sin_theta0, link.cos_theta0) = p[0].sin_cos();
             (link.sin_alpha, link.cos_alpha) = p[1].sin_cos();
@@ -62,6 +83,21 @@ impl Chain {
                 Some((cos_beta, sin_beta)) => (*sin_beta, *cos_beta) = p[3].sin_cos(),
                 None => link.d = p[3],
             }
+        }
+        let mut rest = effects;
+        let mut next = |own: &mut [f64]| {
+            let (values, others) = rest.split_at(own.len());
+            own.copy_from_slice(values);
+            rest = others;
+        };
+        if let Some(harmonics) = &mut self.harmonics {
+            next(harmonics.rad.as_flattened_mut());
+        }
+        if let Some(expansion) = &mut self.expansion {
+            next(expansion);
+        }
+        if let Some(compliance) = &mut self.compliance {
+            next(&mut compliance.rad_per_nm);
         }
     }
 
@@ -72,6 +108,48 @@ impl Chain {
 
     /// Number of parameters of the joints.
     pub fn joint_parameter_count(&self) -> usize {
-        4 * (self.links.len() - 1)
+        4 * (self.links.len() - usize::from(self.links.last().is_some_and(|link| link.bare)))
+    }
+
+    /// Number of derivatives that are of parameters: joints, tip and effects.
+    pub fn parameter_columns(&self) -> usize {
+        self.joint_parameter_count() + 3 + self.effect_columns
+    }
+
+    /// The column behind them: the derivative with respect to the last joint's turn.
+    pub fn turn_column(&self) -> usize {
+        self.parameter_columns()
+    }
+
+    /// The column that says how the tip follows an encoder, but for the sign.
+    pub(crate) fn encoder_column(&self, encoder: usize) -> usize {
+        if 4 * encoder < self.joint_parameter_count() { 4 * encoder } else { self.turn_column() }
+    }
+
+    /// Which encoder a column is that of, if it is one.
+    #[inline(always)]
+    pub(crate) fn encoder_of(&self, column: usize) -> Option<usize> {
+        let joints = self.joint_parameter_count();
+        match column {
+            c if c < joints && c % 4 == 0 => Some(c / 4),
+            c if c == self.turn_column() && joints < 4 * self.links.len() => Some(self.links.len() - 1),
+            _ => None,
+        }
+    }
+
+    /// Which parameter of an arm with so many probes a column is, if it is one: tips are those of `probe`.
+    pub fn parameter_of(&self, column: usize, probe: usize, probes: usize) -> Option<usize> {
+        let joints = self.joint_parameter_count();
+        match column {
+            c if c < joints => Some(c),
+            c if c < joints + 3 => Some(c + 3 * probe),
+            c if c < self.turn_column() => Some(c + 3 * (probes - 1)),
+            _ => None,
+        }
+    }
+
+    /// Whether there is anything but geometry.
+    pub(super) fn has_effects(&self) -> bool {
+        self.effect_columns > 0
     }
 }

@@ -6,16 +6,22 @@
 
 pub mod length;
 pub mod points;
+mod rows;
+pub mod surface;
+mod tile;
+mod touches;
 
 use crate::arm::Arm;
 use crate::error::{Error, Result};
-use crate::kinematics::Chain;
 use crate::kinematics::batch::scratch_len;
+use crate::kinematics::{Chain, Sample};
 use crate::monitor::Monitor;
 use crate::simd::Columns;
 use crate::solver::{BLOCK_ROWS, RowBlock, RowSink};
+use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt::Debug;
+pub use touches::TouchRows;
 
 /// Standard deviations of what is random in a reading.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,7 +44,7 @@ pub enum Weighing {
 /// The numbers of an arm as the residuals use them.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// The joints.
+    /// The joints, and what the arm does beyond its geometry.
     pub chain: Chain,
     /// The tip of each probe, mm.
     pub tips_mm: Vec<[f64; 3]>,
@@ -52,41 +58,65 @@ impl Model {
 
     /// Takes other parameters, in the arm's order.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
-        let (joints, tips) = parameters.split_at(self.chain.joint_parameter_count());
-        self.chain.set_joint_parameters(joints);
+        let (joints, rest) = parameters.split_at(self.chain.joint_parameter_count());
+        let (tips, effects) = rest.split_at(3 * self.tips_mm.len());
+        self.chain.set_parameters(joints, effects);
         for (tip, p) in self.tips_mm.iter_mut().zip(tips.chunks_exact(3)) {
             tip.copy_from_slice(p);
         }
     }
 }
 
-/// A dimension of an artefact that is known with an uncertainty: common to all its readings.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Considered {
-    /// What it is, for reports.
-    pub name: String,
-    /// Its standard uncertainty, mm.
-    pub u_mm: f64,
+/// Where readings are looked at: an arm's numbers, and those of the artefact's dimensions.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a> {
+    /// The arm.
+    pub model: &'a Model,
+    /// The dimensions of the group's artefact, in the order of [`Readings::dimensions`], mm.
+    pub dimensions_mm: &'a [f64],
 }
 
-/// Which unknown each parameter and considered dimension is, if any.
+/// A dimension of an artefact that is not known exactly: common to all its readings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dimension {
+    /// What it is, as a parameter's name: `artefact.ball.diameter`.
+    pub name: String,
+    /// Its calibrated value, mm.
+    pub value_mm: f64,
+    /// The standard uncertainty of that, mm; 0 of a fitted dimension of which nothing is known.
+    pub u_mm: f64,
+    /// Whether it is an unknown of the fit (with its calibration as prior, where u is not 0), or stays at its value, and
+    /// what is not known of it goes into the covariance.
+    pub fitted: bool,
+}
+
+/// Which unknown each parameter and dimension is, if any.
 #[derive(Debug, Clone, Default)]
 pub struct Unknowns {
     /// For each parameter of the arm.
     pub parameters: Vec<Option<usize>>,
-    /// For the considered dimensions of the readings at hand.
-    pub considered: Vec<Option<usize>>,
+    /// For the dimensions of the readings at hand.
+    pub dimensions: Vec<Option<usize>>,
 }
 
 /// Residuals of a group of readings in the order they were given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unweighted {
-    /// Numbers of one reading: 3 for a point, 1 for a length.
+    /// Numbers of one reading: 3 for a point, 1 for a length or a surface.
     pub components: usize,
-    /// Row-major, mm: tip minus the feature's place, or distance minus length.
+    /// Row-major, mm: tip minus the feature's place, distance minus length, or distance from the surface.
     pub residuals_mm: Vec<f64>,
     /// Root of the weight of each reading, 1/mm: equal in effect where it differs by direction.
     pub weights: Vec<f64>,
+}
+
+/// How far each reading is off, in units of its stated noise (mm where none is stated), a loss's weights left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Whitened {
+    /// Norm of each reading's whitened residual, in the order they were given.
+    pub norms: Vec<f64>,
+    /// How many degrees of freedom it has: its equations less what its placement takes of them.
+    pub freedoms: Vec<f64>,
 }
 
 /// Readings of one artefact.
@@ -105,8 +135,13 @@ pub trait Readings: Debug + Send + Sync {
     /// Unknowns of all placements.
     fn placement_unknowns(&self) -> usize;
 
-    /// Whether scaling the arm scales every residual: no length is known anywhere in them.
+    /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.
     fn scale_free(&self) -> bool;
+
+    /// How fast each dimension grows with the arm where no length is known, mm.
+    fn growing(&self, at: At) -> Vec<f64> {
+        vec![0.0; at.dimensions_mm.len()]
+    }
 
     /// Whether the mirror image of the arm explains them as well.
     fn mirror_free(&self) -> bool;
@@ -114,8 +149,8 @@ pub trait Readings: Debug + Send + Sync {
     /// For each probe, whether it took any of them.
     fn probes_used(&self, probes: usize) -> Vec<bool>;
 
-    /// Dimensions known with an uncertainty.
-    fn considered(&self) -> &[Considered];
+    /// Dimensions that are not known exactly.
+    fn dimensions(&self) -> &[Dimension];
 
     /// Bytes that keeping the sines and cosines would take.
     fn sin_cos_bytes(&self) -> usize;
@@ -124,7 +159,10 @@ pub trait Readings: Debug + Send + Sync {
     fn keep_sin_cos(&mut self);
 
     /// Weighs every reading for the noise, at these parameters; without noise every reading weighs one.
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, how: Weighing);
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, how: Weighing);
+
+    /// Weighs each reading, in the order they were given, by a further factor: what a loss makes of it. None: by one.
+    fn discount(&mut self, factors: Option<&[f64]>);
 
     /// Sum of the squared weights of all readings, 1/mm².
     fn weight_squared_sum(&self) -> f64;
@@ -133,19 +171,31 @@ pub trait Readings: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`Error::Interrupted`].
-    fn stream(&self, model: &Model, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()>;
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()>;
 
     /// Residuals as a person reads them.
-    fn unweighted(&self, model: &Model) -> Unweighted;
+    fn unweighted(&self, at: At) -> Unweighted;
 
-    /// Encoder angles of the readings, one row-major pose after the other, at most about `most` of them.
-    fn sample_poses(&self, most: usize) -> Vec<(usize, Vec<f64>)>;
+    /// Residuals as a loss judges them.
+    fn whitened(&self, at: At) -> Whitened;
 
-    /// The same readings, exact for this model, with new noise.
-    fn redrawn(&self, truth: &Model, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;
+    /// Poses of the readings, at most about `most` of them.
+    fn samples(&self, most: usize) -> Vec<Sample>;
+
+    /// Lowest and highest temperature above 20 °C, where it is known.
+    fn warmth_range_k(&self) -> Option<(f64, f64)>;
+
+    /// The same readings, exact at these parameters, with new noise, and dimensions calibrated anew.
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;
 
     /// About `most` of these readings, evenly chosen, for a quick look.
     fn thinned(&self, most: usize) -> Box<dyn Readings>;
+
+    /// The same knowledge, or nearly, as lengths between pairs of touches, where it can be told so: nothing has to be placed
+    /// then, and a search finds its way more often.
+    fn as_lengths(&self) -> Option<Box<dyn Readings>> {
+        None
+    }
 
     /// A copy.
     fn boxed(&self) -> Box<dyn Readings>;
@@ -247,3 +297,8 @@ impl<'a> Writer<'a> {
 
 /// A millisecond of work or less.
 const ROWS_BETWEEN_QUESTIONS: usize = 1 << 15;
+
+/// A standard normal number.
+pub(crate) fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(rng)
+}

@@ -35,14 +35,19 @@ impl Columns {
 
     /// Some rows, in the order given.
     pub(crate) fn picked(&self, rows: &[usize]) -> Columns {
-        let columns = self.data.len() / self.stride.max(1);
-        let mut picked = Columns::zeros(columns, rows.len());
-        for column in 0..columns {
+        let mut picked = Columns::zeros(self.width(), rows.len());
+        for column in 0..self.width() {
             for (value, &row) in picked.column_mut(column).iter_mut().zip(rows) {
                 *value = self.column(column)[row];
             }
         }
         picked
+    }
+
+    /// Number of columns.
+    #[inline(always)]
+    pub fn width(&self) -> usize {
+        self.data.len() / self.stride.max(1)
     }
 
     /// Number of rows, the padding left out.

@@ -3,12 +3,13 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Joint, JointModel, Probe};
-use ulna::kinematics::tip_mm;
-use ulna::problem::Problem;
-use ulna::residuals::Noise;
+use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::kinematics::{Angles, tip_mm};
+use ulna::problem::{BallArtefact, Problem};
 use ulna::residuals::length::LengthRows;
-use ulna::residuals::points::{Features, Frame, PointRows};
+use ulna::residuals::points::{Features, Frame, Uncertainty};
+use ulna::residuals::surface::Side;
+use ulna::residuals::{Noise, TouchRows};
 
 pub fn rng(seed: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(seed)
@@ -20,30 +21,65 @@ pub fn angles(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
 
 /// An arm of `n` encoders with all kinds of joints, signs and two probes.
 pub fn any_arm(rng: &mut Xoshiro256PlusPlus, n: usize) -> Arm {
-    let mut joint = |i: usize| {
-        let hayati = i % 3 == 1;
-        Joint {
-            theta0_rad: rng.random_range(-3.0..3.0),
-            alpha_rad: rng.random_range(-2.0..2.0),
-            a_mm: rng.random_range(-300.0..300.0),
-            d_mm: if hayati { 0.0 } else { rng.random_range(-300.0..300.0) },
-            beta_rad: if hayati { rng.random_range(-0.5..0.5) } else { 0.0 },
-            sign: if rng.random::<bool>() { 1.0 } else { -1.0 },
-            model: if hayati { JointModel::Hayati } else { JointModel::Dh },
-        }
+    let joints = (0..n - 1).map(|i| any_joint(rng, i)).collect();
+    let probes = any_probes(rng);
+    Arm::new(joints, if n.is_multiple_of(2) { 1.0 } else { -1.0 }, probes).unwrap()
+}
+
+/// The same with a link after the last joint too.
+pub fn any_full_arm(rng: &mut Xoshiro256PlusPlus, n: usize) -> Arm {
+    let joints = (0..n).map(|i| any_joint(rng, i)).collect();
+    let probes = any_probes(rng);
+    Arm::with_full_last_link(joints, probes).unwrap()
+}
+
+/// What some arms do beyond their geometry, larger than any arm would.
+pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
+    let mut small = |size: f64| rng.random_range(-size..size);
+    let mut harmonics = Harmonics::zero(&[1, 2, 5], n);
+    harmonics.amplitudes_rad.iter_mut().flatten().for_each(|amplitude| *amplitude = small(0.02));
+    let body = |small: &mut dyn FnMut(f64) -> f64| Body {
+        mass_kg: 3.0 + small(2.0),
+        centre_mm: [small(100.0), small(100.0), small(100.0)],
     };
-    let joints = (0..n - 1).map(&mut joint).collect();
-    let probes = ["straight", "bent"].map(|name| Probe {
-        name: name.into(),
-        tip_mm: [rng.random_range(-50.0..50.0), rng.random_range(-50.0..50.0), rng.random_range(100.0..250.0)],
-    });
-    Arm::new(joints, if n.is_multiple_of(2) { 1.0 } else { -1.0 }, probes.to_vec()).unwrap()
+    Effects {
+        harmonics: Some(harmonics),
+        expansion: Some(Expansion { per_kelvin: (0..n).map(|_| small(1e-3)).collect() }),
+        compliance: Some(Compliance {
+            rad_per_nm: (0..n).map(|_| small(5e-3)).collect(),
+            bodies: (0..n).map(|_| body(&mut small)).collect(),
+            gravity: [small(1.0), small(1.0), -1.5],
+        }),
+    }
+}
+
+/// Temperatures above 20 °C, one for each joint of each pose.
+pub fn warmth(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
+    (0..count).map(|_| rng.random_range(-8.0..15.0)).collect()
+}
+
+fn any_joint(rng: &mut Xoshiro256PlusPlus, i: usize) -> Joint {
+    let hayati = i % 3 == 1;
+    Joint {
+        theta0_rad: rng.random_range(-3.0..3.0),
+        alpha_rad: rng.random_range(-2.0..2.0),
+        a_mm: rng.random_range(-300.0..300.0),
+        d_mm: if hayati { 0.0 } else { rng.random_range(-300.0..300.0) },
+        beta_rad: if hayati { rng.random_range(-0.5..0.5) } else { 0.0 },
+        sign: if rng.random::<bool>() { 1.0 } else { -1.0 },
+        model: if hayati { JointModel::Hayati } else { JointModel::Dh },
+    }
+}
+
+fn any_probes(rng: &mut Xoshiro256PlusPlus) -> Vec<Probe> {
+    let mut tip = || [rng.random_range(-50.0..50.0), rng.random_range(-50.0..50.0), rng.random_range(100.0..250.0)];
+    ["straight", "bent"].map(|name| Probe { name: name.into(), tip_mm: tip() }).to_vec()
 }
 
 /// Every kind of readings, not consistent with anything: `label`, and a function that adds them to a problem.
 pub type Kind = (&'static str, fn(&mut Problem, &mut Xoshiro256PlusPlus));
 
-pub const KINDS: [Kind; 6] = [
+pub const KINDS: [Kind; 14] = [
     ("length", |p, r| lengths(p, r, 40)),
     ("bar touched once", |p, r| points(p, r, Frame::Free, &[[0.0; 3], [443.0, 0.0, 0.0]], 20, 1)),
     ("bar touched often", |p, r| points(p, r, Frame::Free, &[[0.0; 3], [443.0, 0.0, 0.0]], 3, 13)),
@@ -56,6 +92,24 @@ pub const KINDS: [Kind; 6] = [
         let grid = [[300.0, 0.0, 100.0], [0.0, 400.0, 200.0], [-300.0, 200.0, 0.0]];
         points(p, r, Frame::Arm, &grid, 1, 12);
     }),
+    ("ball bar of many balls in line", |p, r| {
+        let bar: Vec<[f64; 3]> = (0..8).map(|k| [60.0 * f64::from(k), 0.0, 0.0]).collect();
+        points(p, r, Frame::Free, &bar, 3, 4);
+    }),
+    ("plate whose features may move", |p, r| {
+        let plate = [[0.0; 3], [100.0, 0.0, 0.0], [0.0, 150.0, 0.0], [80.0, 90.0, 5.0]];
+        let u = Uncertainty::Each(&[0.4, 0.0, 0.3, 0.2]);
+        uncertain_points(p, r, Frame::Free, &plate, (u, true), 3, 4);
+    }),
+    ("bar whose length may change", |p, r| {
+        let bar = [[0.0; 3], [443.0, 0.0, 0.0]];
+        uncertain_points(p, r, Frame::Free, &bar, (Uncertainty::Length(0.5), true), 12, 2);
+    }),
+    ("ball", |p, r| ball(p, r, false, Side::Outside)),
+    ("ball of unknown diameter", |p, r| ball(p, r, true, Side::Outside)),
+    ("hollow sphere", |p, r| ball(p, r, false, Side::Inside)),
+    ("flat", |p, r| flat(p, r, [6.0, 6.0])),
+    ("flat touched with two balls", |p, r| flat(p, r, [6.0, 40.0])),
 ];
 
 pub fn noises(encoders: usize) -> [(&'static str, Option<Noise>); 3] {
@@ -69,11 +123,11 @@ fn lengths(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, count: usize) {
     let (q, p) = (angles(rng, n * count), angles(rng, n * count));
     let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
     let length_mm: Vec<f64> = (0..count).map(|_| rng.random_range(100.0..900.0)).collect();
-    let rows = LengthRows { q_rad: &q, p_rad: &p, probe: &probe, length_mm: &length_mm };
-    problem.add_lengths("pairs", rows, 0.0).unwrap();
+    let warmth_k = warmth(rng, count);
+    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &warmth_k, probe: &probe, length_mm: &length_mm };
+    problem.add_lengths("pairs", rows, 0.0, false).unwrap();
 }
 
-/// Tips come close to the features by correcting nothing: residuals of tens of millimetres, as at a start.
 fn points(
     problem: &mut Problem,
     rng: &mut Xoshiro256PlusPlus,
@@ -82,15 +136,60 @@ fn points(
     placements: usize,
     touches: usize,
 ) {
+    uncertain_points(problem, rng, frame, features, (Uncertainty::None, false), placements, touches);
+}
+
+/// Tips come close to the features by correcting nothing: residuals of tens of millimetres, as at a start.
+fn uncertain_points(
+    problem: &mut Problem,
+    rng: &mut Xoshiro256PlusPlus,
+    frame: Frame,
+    features: &[[f64; 3]],
+    (u, fitted): (Uncertainty, bool),
+    placements: usize,
+    touches: usize,
+) {
     let n = problem.arm().encoders();
     let count = placements * touches * features.len();
     let q = angles(rng, n * count);
+    let warmth_k = warmth(rng, n * count);
     let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
     let feature: Vec<usize> = (0..count).map(|i| i % features.len()).collect();
     let placement: Vec<i64> = (0..count).map(|i| (i / features.len() % placements) as i64).collect();
-    let rows = PointRows { q_rad: &q, probe: &probe, feature: &feature, placement: &placement };
-    let features = Features { name: "artefact", coordinates_mm: features, u_mm: 0.0, frame };
+    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
+    let rows = TouchRows { poses, probe: &probe, feature: &feature, placement: &placement };
+    let labels: Vec<String> = (1..=features.len()).map(|k| format!("f{k}")).collect();
+    let features = Features { name: "artefact", labels: &labels, coordinates_mm: features, u, fitted, frame };
     problem.add_points(&features, rows).unwrap();
+}
+
+/// Touches all around two places of a ball a little smaller than the arm's reach.
+fn ball(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, fitted: bool, side: Side) {
+    let diameter_mm = 1.2 * problem.arm().reach_mm(0);
+    let ball = BallArtefact { name: "ball", diameter_mm, u_mm: 0.0, fitted, side, balls_mm: &[6.0, 6.0] };
+    touched(problem, rng, 2, 21, |problem, rows| problem.add_sphere(&ball, rows));
+}
+
+fn flat(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, balls_mm: [f64; 2]) {
+    touched(problem, rng, 3, 14, |problem, rows| problem.add_plane(&balls_mm, rows));
+}
+
+fn touched(
+    problem: &mut Problem,
+    rng: &mut Xoshiro256PlusPlus,
+    placements: usize,
+    touches: usize,
+    add: impl Fn(&mut Problem, TouchRows) -> ulna::Result<usize>,
+) {
+    let n = problem.arm().encoders();
+    let count = placements * touches;
+    let q = angles(rng, n * count);
+    let warmth_k = warmth(rng, count);
+    let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
+    let placement: Vec<i64> = (0..count).map(|i| (i % placements) as i64).collect();
+    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
+    let rows = TouchRows { poses, probe: &probe, feature: &vec![0; count], placement: &placement };
+    add(problem, rows).unwrap();
 }
 
 /// Tips by the plain map, mm.

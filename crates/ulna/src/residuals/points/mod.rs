@@ -1,215 +1,131 @@
 //! `points`, `bar`, `seat`: the tip on a feature with known coordinates, of an artefact that stands somewhere.
 //!
 //! ```text
-//! r = W (p(q) - (R f + t))       WᵀW = Σ⁻¹,  Σ = J_q Σ_encoder J_qᵀ + σ_seat² I
+//! r = W (p(q) - (R f + t))       WᵀW = Σ⁻¹,  Σ = J_q Σ_encoder J_qᵀ + σ_seat² I + u_f² I (a feature touched once)
 //! ```
 //!
 //! A seat is an artefact of one feature, a bar of two. With `frame = "arm"` R and t are known (none).
 
+mod features;
 mod placement;
 mod rows;
-mod tile;
 mod weigh;
 mod whitening;
 
-use super::length::normal;
-use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Weighing, Writer};
+use super::length::{LengthRows, Lengths};
+use super::touches::{TouchRows, Touches};
+use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal};
 use crate::error::Result;
-use crate::kinematics::Poses;
-use crate::kinematics::batch::tips_mm;
+use crate::kinematics::Sample;
 use crate::simd::Columns;
+pub use features::{Features, Frame, Uncertainty};
+use features::{Move, unknown};
 use nalgebra::{Isometry3, Vector3};
 use placement::{Placement, Touch};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use std::ops::Range;
 use whitening::Whitening;
-
-/// Where an artefact's coordinates hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Frame {
-    /// In its own frame: each placement has an unknown pose.
-    Free,
-    /// In the arm's base frame.
-    Arm,
-}
 
 /// Readings of the features of one artefact.
 #[derive(Debug, Clone)]
 pub struct Points {
     features_mm: Vec<Vector3<f64>>,
     frame: Frame,
+    touches: Touches,
+    /// of each of the touches' standings
     placements: Vec<Placement>,
-    /// which row of the file each reading is; readings are sorted by placement and feature
-    order: Vec<usize>,
-    poses: Poses,
-    probe: Vec<usize>,
-    feature: Vec<usize>,
-    /// what the tip is off by for reasons of its own, taken away before the residual (used by simulation)
-    offset_mm: Option<Columns>,
     whitening: Whitening,
-    considered: Vec<Considered>,
-    /// for each considered dimension, the feature and the direction in which it would move, artefact frame
-    considered_moves: Vec<(usize, Vector3<f64>)>,
-}
-
-/// What rows of a file say.
-#[derive(Debug, Clone, Copy)]
-pub struct PointRows<'a> {
-    /// Row-major angles, rad.
-    pub q_rad: &'a [f64],
-    /// Which probe took each row.
-    pub probe: &'a [usize],
-    /// Which feature was touched.
-    pub feature: &'a [usize],
-    /// Which standing of the artefact: any labels.
-    pub placement: &'a [i64],
-}
-
-/// An artefact's features: coordinates, and which of them are uncertain.
-#[derive(Debug, Clone)]
-pub struct Features<'a> {
-    /// The artefact's name.
-    pub name: &'a str,
-    /// Coordinates, mm.
-    pub coordinates_mm: &'a [[f64; 3]],
-    /// Standard uncertainty of each feature's coordinates, mm; of a bar, that of its length.
-    pub u_mm: f64,
-    /// Where the coordinates hold.
-    pub frame: Frame,
+    /// the same with what a loss makes of it
+    discounted: Option<Whitening>,
+    dimensions: Vec<Dimension>,
+    moves: Vec<Move>,
+    /// variance that each feature adds to its own reading alone, mm²
+    of_its_own: Vec<f64>,
 }
 
 impl Points {
     /// Readings of an arm of `encoders` joints.
-    pub fn new(features: &Features, encoders: usize, data: PointRows) -> Points {
-        let features_mm: Vec<Vector3<f64>> = features.coordinates_mm.iter().map(|&f| f.into()).collect();
-        let mut first_seen = std::collections::HashMap::new();
-        let placement: Vec<usize> = data
-            .placement
-            .iter()
-            .map(|&label| {
-                let next = first_seen.len();
-                let label = if features.frame == Frame::Arm { 0 } else { label };
-                *first_seen.entry(label).or_insert(next)
-            })
-            .collect();
-        let mut order: Vec<usize> = (0..data.feature.len()).collect();
-        order.sort_by_key(|&r| (placement[r], data.feature[r], r));
-        let feature: Vec<usize> = order.iter().map(|&r| data.feature[r]).collect();
-        let of_placement: Vec<usize> = order.iter().map(|&r| placement[r]).collect();
-        let mut placements = Vec::new();
-        for rows in equal_runs(&of_placement) {
-            let touched: Vec<_> = feature[rows.clone()].iter().map(|&f| features_mm[f]).collect();
-            placements.push(Placement::new(rows, &touched));
-        }
+    pub fn new(features: &Features, encoders: usize, rows: TouchRows) -> Points {
+        let mut counts = vec![0; features.coordinates_mm.len()];
+        rows.feature.iter().for_each(|&f| counts[f] += 1);
+        let (dimensions, moves, of_its_own) = unknown(features, &counts);
         let mut points = Points {
-            features_mm,
+            features_mm: features.coordinates_mm.iter().map(|&f| f.into()).collect(),
             frame: features.frame,
-            placements,
-            poses: Poses::gathered(data.q_rad, encoders, &order),
-            probe: order.iter().map(|&r| data.probe[r]).collect(),
-            order,
-            feature,
-            offset_mm: None,
+            touches: Touches::new(rows, encoders, features.frame == Frame::Arm),
+            placements: vec![],
             whitening: Whitening::Same(1.0),
-            considered: vec![],
-            considered_moves: vec![],
+            discounted: None,
+            dimensions,
+            moves,
+            of_its_own,
         };
-        points.consider(features);
+        points.place();
         points
     }
 
-    /// Of a bar, the length; of other artefacts with more than one feature, every coordinate of every feature.
-    fn consider(&mut self, features: &Features) {
-        if features.u_mm <= 0.0 {
-            return;
-        }
-        let name = features.name;
-        match (features.coordinates_mm.len(), self.frame) {
-            (1, Frame::Free) => {}
-            (2, Frame::Free) => {
-                let along = (self.features_mm[1] - self.features_mm[0]).normalize();
-                self.considered_moves.push((1, along));
-                self.considered.push(Considered { name: format!("artefact.{name}.length"), u_mm: features.u_mm });
-            }
-            (count, _) => {
-                for feature in 0..count {
-                    for (axis, letter) in ["x", "y", "z"].iter().enumerate() {
-                        self.considered_moves.push((feature, Vector3::ith(axis, 1.0)));
-                        self.considered.push(Considered {
-                            name: format!("artefact.{name}.feature.{}.{letter}", feature + 1),
-                            u_mm: features.u_mm,
-                        });
-                    }
-                }
-            }
-        }
+    /// What each standing can show.
+    fn place(&mut self) {
+        let placement = |rows: &Range<usize>| {
+            let touched: Vec<_> = self.touches.feature[rows.clone()].iter().map(|&f| self.features_mm[f]).collect();
+            Placement::new(&touched)
+        };
+        self.placements = self.touches.standings.iter().map(placement).collect();
     }
 
-    /// Tips of all readings, base frame, mm.
-    fn tips(&self, model: &Model) -> Columns {
-        let mut p = Columns::zeros(3, self.order.len());
-        tips_mm(&model.chain, &self.poses, &self.tip_of_each(model), &mut p);
-        if let Some(offset) = &self.offset_mm {
-            for j in 0..3 {
-                for (value, o) in p.column_mut(j).iter_mut().zip(offset.column(j)) {
-                    *value -= o;
-                }
-            }
-        }
-        p
+    fn weights(&self) -> &Whitening {
+        self.discounted.as_ref().unwrap_or(&self.whitening)
     }
 
-    fn tip_of_each(&self, model: &Model) -> Columns {
-        let mut tips = Columns::zeros(3, self.order.len());
-        for j in 0..3 {
-            for (value, &probe) in tips.column_mut(j).iter_mut().zip(&self.probe) {
-                *value = model.tips_mm[probe][j];
-            }
+    /// The features with other dimensions.
+    fn features_at(&self, dimensions_mm: &[f64]) -> Vec<Vector3<f64>> {
+        let mut features = self.features_mm.clone();
+        for ((&(feature, direction), dimension), value) in self.moves.iter().zip(&self.dimensions).zip(dimensions_mm) {
+            features[feature] += direction * (value - dimension.value_mm);
         }
-        tips
+        features
     }
 
-    fn touch(&self, p: &Columns, row: usize) -> Touch {
+    fn touch(&self, p: &Columns, features_mm: &[Vector3<f64>], row: usize) -> Touch {
         Touch {
             p_mm: Vector3::new(p.column(0)[row], p.column(1)[row], p.column(2)[row]),
-            feature_mm: self.features_mm[self.feature[row]],
-            whiten: self.whitening.at(row),
+            feature_mm: features_mm[self.touches.feature[row]],
+            whiten: self.weights().at(row),
         }
     }
 
     /// Where each placement stands.
-    fn placement_poses(&self, p: &Columns) -> Vec<Isometry3<f64>> {
+    fn placement_poses(&self, p: &Columns, features_mm: &[Vector3<f64>]) -> Vec<Isometry3<f64>> {
         if self.frame == Frame::Arm {
             return vec![Isometry3::identity(); self.placements.len()];
         }
-        let isotropic = self.whitening.is_isotropic();
-        let pose = |placement: &Placement| {
-            let touches: Vec<Touch> = placement.rows.clone().map(|row| self.touch(p, row)).collect();
+        let isotropic = self.weights().is_isotropic();
+        let pose = |(placement, rows): (&Placement, &Range<usize>)| {
+            let touches: Vec<Touch> = rows.clone().map(|row| self.touch(p, features_mm, row)).collect();
             placement.pose(&touches, isotropic)
         };
-        self.placements.iter().map(pose).collect()
+        self.placements.iter().zip(&self.touches.standings).map(pose).collect()
     }
-}
 
-/// Maximal runs of equal values.
-fn equal_runs(values: &[usize]) -> Vec<std::ops::Range<usize>> {
-    let mut runs = Vec::new();
-    let mut start = 0;
-    for end in 1..=values.len() {
-        if end == values.len() || values[end] != values[start] {
-            runs.push(start..end);
-            start = end;
-        }
+    /// Every touch with the pose that its artefact has.
+    fn placed_touches(&self, at: At) -> Vec<(Touch, Isometry3<f64>)> {
+        let p = self.touches.tips(at.model);
+        let features_mm = self.features_at(at.dimensions_mm);
+        let poses = self.placement_poses(&p, &features_mm);
+        let of = |(rows, pose): (&Range<usize>, &Isometry3<f64>)| {
+            rows.clone().map(|row| (self.touch(&p, &features_mm, row), *pose)).collect::<Vec<_>>()
+        };
+        self.touches.standings.iter().zip(&poses).flat_map(of).collect()
     }
-    runs
 }
 
 impl Readings for Points {
     fn len(&self) -> usize {
-        self.order.len()
+        self.touches.len()
     }
 
     fn equations(&self) -> usize {
-        3 * self.order.len()
+        3 * self.touches.len()
     }
 
     fn placement_unknowns(&self) -> usize {
@@ -228,107 +144,155 @@ impl Readings for Points {
     }
 
     fn probes_used(&self, probes: usize) -> Vec<bool> {
-        (0..probes).map(|p| self.probe.contains(&p)).collect()
+        self.touches.probes_used(probes)
     }
 
-    fn considered(&self) -> &[Considered] {
-        &self.considered
+    fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
     }
 
     fn sin_cos_bytes(&self) -> usize {
-        self.order.len() * self.poses.encoders() * 2 * size_of::<f64>()
+        self.touches.sin_cos_bytes()
     }
 
     fn keep_sin_cos(&mut self) {
-        self.poses.keep_sin_cos();
+        self.touches.poses.keep_sin_cos();
     }
 
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, how: Weighing) {
-        let full = weigh::for_noise(self, model, noise);
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, how: Weighing) {
+        let full = weigh::for_noise(self, at.model, noise);
         self.whitening = match how {
             Weighing::Full => full,
-            Weighing::Even => full.even(self.order.len()),
+            Weighing::Even => full.even(self.touches.len()),
         };
+        self.discounted = None;
+    }
+
+    fn discount(&mut self, factors: Option<&[f64]>) {
+        let sorted = |factors: &[f64]| self.touches.order.iter().map(|&row| factors[row]).collect::<Vec<_>>();
+        self.discounted = factors.map(|factors| self.whitening.times(&sorted(factors)));
     }
 
     fn weight_squared_sum(&self) -> f64 {
-        (0..self.order.len()).map(|row| self.whitening.at(row).norm_squared() / 3.0).sum()
+        (0..self.touches.len()).map(|row| self.weights().at(row).norm_squared() / 3.0).sum()
     }
 
-    fn stream(&self, model: &Model, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
-        rows::stream(self, model, unknowns, jacobian, out)
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
+        rows::stream(self, at, unknowns, jacobian, out)
     }
 
-    fn unweighted(&self, model: &Model) -> Unweighted {
-        let p = self.tips(model);
-        let poses = self.placement_poses(&p);
-        let mut residuals_mm = vec![0.0; 3 * self.order.len()];
-        let mut weights = vec![0.0; self.order.len()];
-        for (placement, pose) in self.placements.iter().zip(&poses) {
-            for row in placement.rows.clone() {
-                let touch = self.touch(&p, row);
-                let at = self.order[row];
-                residuals_mm[3 * at..3 * at + 3].copy_from_slice(touch.residual(pose).as_slice());
-                weights[at] = (touch.whiten.norm_squared() / 3.0).sqrt();
-            }
+    fn unweighted(&self, at: At) -> Unweighted {
+        let mut residuals_mm = vec![0.0; 3 * self.touches.len()];
+        let mut weights = vec![0.0; self.touches.len()];
+        for ((touch, pose), &row) in self.placed_touches(at).iter().zip(&self.touches.order) {
+            residuals_mm[3 * row..3 * row + 3].copy_from_slice(touch.residual(pose).as_slice());
+            weights[row] = (touch.whiten.norm_squared() / 3.0).sqrt();
         }
         Unweighted { components: 3, residuals_mm, weights }
     }
 
-    fn sample_poses(&self, most: usize) -> Vec<(usize, Vec<f64>)> {
-        let step = self.order.len().div_ceil(most.max(1)).max(1);
-        let rows = (0..self.order.len()).step_by(step);
-        rows.map(|row| (self.probe[row], self.poses.pose(row))).collect()
+    fn whitened(&self, at: At) -> Whitened {
+        let placed = self.placed_touches(at);
+        let norm = |row: usize| {
+            let (touch, pose) = &placed[row];
+            (self.whitening.at(row) * touch.residual(pose)).norm()
+        };
+        let free = |(rows, placement): (&Range<usize>, &Placement)| {
+            let taken = if self.frame == Frame::Free { placement.unknowns() } else { 0 };
+            vec![(3 * rows.len()).saturating_sub(taken) as f64 / rows.len() as f64; rows.len()]
+        };
+        let freedoms = self.touches.standings.iter().zip(&self.placements).flat_map(free);
+        Whitened {
+            norms: self.touches.filed((0..self.touches.len()).map(norm)),
+            freedoms: self.touches.filed(freedoms),
+        }
     }
 
-    fn redrawn(&self, truth: &Model, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+    fn samples(&self, most: usize) -> Vec<Sample> {
+        self.touches.samples(most)
+    }
+
+    fn warmth_range_k(&self) -> Option<(f64, f64)> {
+        self.touches.poses.warmth_range_k()
+    }
+
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
         let mut drawn = self.clone();
-        let p = self.tips(truth);
-        let poses = self.placement_poses(&p);
-        for (considered, (feature, direction)) in self.considered.iter().zip(&self.considered_moves) {
-            drawn.features_mm[*feature] += direction * (considered.u_mm * normal(rng));
+        let features_mm = self.features_at(truth.dimensions_mm);
+        // the artefact is what it is; its calibration is drawn anew
+        drawn.features_mm = features_mm;
+        for (k, &(feature, direction)) in self.moves.iter().enumerate() {
+            let calibrated = truth.dimensions_mm[k] + self.dimensions[k].u_mm * normal(rng);
+            drawn.features_mm[feature] += direction * (calibrated - truth.dimensions_mm[k]);
+            drawn.dimensions[k].value_mm = calibrated;
         }
-        let mut offset = self.offset_mm.clone().unwrap_or_else(|| Columns::zeros(3, self.order.len()));
-        for (placement, pose) in self.placements.iter().zip(&poses) {
-            for row in placement.rows.clone() {
-                let residual = self.touch(&p, row).residual(pose);
-                for j in 0..3 {
-                    offset.column_mut(j)[row] += residual[j] + noise.seat_mm * normal(rng);
-                }
-            }
-        }
-        drawn.offset_mm = Some(offset);
-        drawn.poses.add_noise(&noise.encoder_rad, rng);
+        let placed = self.placed_touches(truth);
+        let residuals = placed.iter().zip(&self.touches.feature).map(|((touch, pose), &feature)| {
+            (touch.residual(pose), (noise.seat_mm.powi(2) + self.of_its_own[feature]).sqrt())
+        });
+        drawn.touches.redraw(residuals, &noise.encoder_rad, rng);
         Box::new(drawn)
     }
 
     fn thinned(&self, most: usize) -> Box<dyn Readings> {
-        let mut picked = Vec::new();
-        let mut placements = Vec::new();
-        for placement in &self.placements {
-            let rows = placement.rows.len();
-            let share = (most * rows).div_ceil(self.order.len()).clamp(4.min(rows), rows);
-            let begin = picked.len();
-            picked.extend((0..share).map(|i| placement.rows.start + i * (rows - 1) / (share - 1).max(1)));
-            let touched: Vec<_> = picked[begin..].iter().map(|&row| self.features_mm[self.feature[row]]).collect();
-            placements.push(Placement::new(begin..picked.len(), &touched));
-        }
-        Box::new(Points {
+        let (touches, picked) = self.touches.thinned(most);
+        let mut thin = Points {
             features_mm: self.features_mm.clone(),
             frame: self.frame,
-            placements,
-            order: (0..picked.len()).collect(),
-            poses: self.poses.picked(&picked),
-            probe: picked.iter().map(|&row| self.probe[row]).collect(),
-            feature: picked.iter().map(|&row| self.feature[row]).collect(),
-            offset_mm: self.offset_mm.as_ref().map(|o| o.picked(&picked)),
+            touches,
+            placements: vec![],
             whitening: self.whitening.picked(&picked),
-            considered: self.considered.clone(),
-            considered_moves: self.considered_moves.clone(),
-        })
+            discounted: self.discounted.as_ref().map(|w| w.picked(&picked)),
+            dimensions: self.dimensions.clone(),
+            moves: self.moves.clone(),
+            of_its_own: self.of_its_own.clone(),
+        };
+        thin.place();
+        Box::new(thin)
+    }
+
+    fn as_lengths(&self) -> Option<Box<dyn Readings>> {
+        let told = self.frame == Frame::Free && self.placements.iter().all(|placement| placement.span > 0);
+        let pairs: Vec<(usize, usize)> = self.touches.standings.iter().flat_map(|rows| self.pairs(rows)).collect();
+        if !told || pairs.is_empty() {
+            return None;
+        }
+        let (mut q_rad, mut p_rad, mut warmth_k) = (vec![], vec![], vec![]);
+        for &(from, to) in &pairs {
+            let (first, second) = (self.touches.poses.sample(from, 0), self.touches.poses.sample(to, 0));
+            q_rad.extend(first.q_rad);
+            p_rad.extend(second.q_rad);
+            warmth_k.extend(first.warmth_k);
+        }
+        let feature = |row: usize| self.features_mm[self.touches.feature[row]];
+        let rows = LengthRows {
+            q_rad: &q_rad,
+            p_rad: &p_rad,
+            warmth_k: &warmth_k,
+            probe: &pairs.iter().map(|&(from, _)| self.touches.probe[from]).collect::<Vec<_>>(),
+            length_mm: &pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect::<Vec<_>>(),
+        };
+        Some(Box::new(Lengths::new("pairs", self.touches.poses.encoders(), rows, 0.0, false)))
     }
 
     fn boxed(&self) -> Box<dyn Readings> {
         Box::new(self.clone())
+    }
+}
+
+impl Points {
+    /// Touches of one standing in pairs at different features, with one probe each: every touch with three others at most,
+    /// as many as hold a body of points together.
+    fn pairs(&self, rows: &Range<usize>) -> Vec<(usize, usize)> {
+        let apart = |a: usize, b: usize| {
+            let same = self.touches.feature[a] == self.touches.feature[b];
+            !same && self.touches.probe[a] == self.touches.probe[b]
+        };
+        let half = rows.len() / 2;
+        let partners = |a: usize| {
+            let others = (0..rows.len()).map(move |k| rows.start + (a - rows.start + half + k) % rows.len());
+            others.filter(move |&b| b > a && apart(a, b)).take(3).map(move |b| (a, b)).collect::<Vec<_>>()
+        };
+        rows.clone().flat_map(partners).collect()
     }
 }

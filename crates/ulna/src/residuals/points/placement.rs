@@ -3,13 +3,10 @@
 use nalgebra::{
     DMatrix, DVector, Isometry3, Matrix3, Matrix3xX, Point3, Rotation3, Translation3, UnitQuaternion, Vector3,
 };
-use std::ops::Range;
 
-/// One standing of an artefact: which readings, and which motions of it the touched features can show.
+/// Which motions of one standing of an artefact the touched features can show.
 #[derive(Debug, Clone)]
 pub(super) struct Placement {
-    /// readings, in the order of the group
-    pub rows: Range<usize>,
     /// centroid of the touched features, in the artefact's frame, mm
     pub anchor: Vector3<f64>,
     /// axes about which a turn moves a touched feature, in the artefact's frame: 3, 2 where they are in line, none for one
@@ -18,12 +15,14 @@ pub(super) struct Placement {
     pub span: usize,
 }
 
+/// Steps after which what is left to do is done with second derivatives.
+const GAUSS_NEWTON_STEPS: usize = 8;
 /// A radius this small against the artefact's size is a point on the axis, up to rounding.
 const ON_AXIS: f64 = 1e-8;
 
 impl Placement {
-    /// From the features touched in these rows (with repetitions).
-    pub fn new(rows: Range<usize>, touched: &[Vector3<f64>]) -> Placement {
+    /// From the features touched (with repetitions).
+    pub fn new(touched: &[Vector3<f64>]) -> Placement {
         let anchor = touched.iter().sum::<Vector3<f64>>() / touched.len() as f64;
         let arms = touched.iter().map(|f| f - anchor);
         let scatter: Matrix3<f64> = arms.map(|r| r * r.transpose()).sum();
@@ -33,7 +32,7 @@ impl Placement {
         let span = eigen.eigenvalues.iter().filter(|&&value| seen(value)).count();
         let turns = |k: &usize| seen(eigen.eigenvalues.sum() - eigen.eigenvalues[*k]);
         let axes = (0..3).filter(turns).map(|k| eigen.eigenvectors.column(k).into()).collect();
-        Placement { rows, anchor, axes, span }
+        Placement { anchor, axes, span }
     }
 
     /// Number of unknowns: 3, 5 or 6.
@@ -43,7 +42,8 @@ impl Placement {
 
     /// The best pose `t_base_artefact` for whitened residuals `W (p - (R f + t))`.
     ///
-    /// Where all weights are alike in all directions the closed form is exact (Kabsch 1976); else Gauss-Newton goes on from it.
+    /// Where each weight is alike in all directions the closed form is exact (Kabsch 1976); else Gauss-Newton goes on from
+    /// it, and where residuals are so large that this takes long, Newton.
     pub fn pose(&self, touches: &[Touch], isotropic: bool) -> Isometry3<f64> {
         let weight: f64 = touches.iter().map(Touch::weight).sum();
         let mean =
@@ -65,8 +65,8 @@ impl Placement {
         let translation = Translation3::from(p_mean - rotation * f_mean);
         let mut pose = Isometry3::from_parts(translation, UnitQuaternion::from_rotation_matrix(&rotation));
         if !isotropic {
-            for _ in 0..100 {
-                let moved = self.improve(&mut pose, touches);
+            for step in 0..100 {
+                let moved = self.improve(&mut pose, touches, step >= GAUSS_NEWTON_STEPS);
                 if moved < 1e-13 {
                     break;
                 }
@@ -75,8 +75,8 @@ impl Placement {
         pose
     }
 
-    /// One Gauss-Newton step, shortened until it lowers the cost; returns its size relative to the distances involved.
-    fn improve(&self, pose: &mut Isometry3<f64>, touches: &[Touch]) -> f64 {
+    /// One step, shortened until it lowers the cost; returns its size relative to the distances involved.
+    fn improve(&self, pose: &mut Isometry3<f64>, touches: &[Touch], newton: bool) -> f64 {
         let n = self.unknowns();
         let mut normal = DMatrix::zeros(n, n);
         let mut right = DVector::zeros(n);
@@ -86,7 +86,8 @@ impl Placement {
             normal += columns.transpose() * &columns;
             right += columns.transpose() * residual;
         }
-        let Some(cholesky) = normal.cholesky() else {
+        let curved = newton.then(|| &normal + self.curvature(pose, touches)).and_then(|h| h.cholesky());
+        let Some(cholesky) = curved.or_else(|| normal.cholesky()) else {
             return 0.0;
         };
         let mut step = -cholesky.solve(&right);
@@ -104,6 +105,22 @@ impl Placement {
             step *= 0.5;
         }
         0.0
+    }
+
+    /// What the turns' second derivatives add to the normal equations: `(Wᵀ W r) · ∂²r`.
+    fn curvature(&self, pose: &Isometry3<f64>, touches: &[Touch]) -> DMatrix<f64> {
+        let mut curvature = DMatrix::zeros(self.unknowns(), self.unknowns());
+        for touch in touches {
+            let pulled = pose.rotation.inverse() * (touch.whiten.transpose() * (touch.whiten * touch.residual(pose)));
+            let arm = touch.feature_mm - self.anchor;
+            for (i, a) in self.axes.iter().enumerate() {
+                for (j, b) in self.axes.iter().enumerate() {
+                    let bent = a.cross(&b.cross(&arm)) + b.cross(&a.cross(&arm));
+                    curvature[(3 + i, 3 + j)] -= 0.5 * pulled.dot(&bent);
+                }
+            }
+        }
+        curvature
     }
 
     /// The pose after a step of the unknowns: the anchor shifted, the artefact turned about it.

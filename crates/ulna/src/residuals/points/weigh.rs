@@ -1,8 +1,8 @@
-//! The weight of each touch for the stated noise: what the encoders' noise does at the tip, and the seat's.
+//! The weight of each touch for the stated noise: what the encoders' noise does at the tip, the seat's, and the feature's.
 
 use super::Points;
-use super::tile::{TILE, Tile};
 use super::whitening::Whitening;
+use crate::residuals::tile::{TILE, Tile};
 use crate::residuals::{Model, Noise};
 use crate::simd::Columns;
 use nalgebra::{Matrix3, Vector3};
@@ -12,21 +12,26 @@ pub(super) fn for_noise(points: &Points, model: &Model, noise: Option<&Noise>) -
     let Some(noise) = noise else {
         return Whitening::Same(1.0);
     };
+    let count = points.touches.len();
+    let own = |row: usize| noise.seat_mm.powi(2) + points.of_its_own[points.touches.feature[row]];
     if noise.encoder_rad.iter().all(|&sigma| sigma == 0.0) {
-        return Whitening::Same(if noise.seat_mm > 0.0 { noise.seat_mm.recip() } else { 1.0 });
+        let weight = |variance: f64| if variance > 0.0 { variance.sqrt().recip() } else { 1.0 };
+        if points.of_its_own.iter().all(|&variance| variance == 0.0) {
+            return Whitening::Same(weight(noise.seat_mm.powi(2)));
+        }
+        let each: Vec<f64> = (0..count).map(|row| weight(own(row))).collect();
+        return Whitening::Round(Columns::from_rows(&each, 1));
     }
-    let count = points.order.len();
-    let joint_columns = model.chain.joint_parameter_count();
-    let mut tile = Tile::new(points, model);
+    let chain = &model.chain;
+    let mut tile = Tile::new(&points.touches, model, 3);
     let mut scratch = Vec::new();
     let mut whitening = Columns::zeros(6, count);
     for start in (0..count).step_by(TILE) {
-        tile.fill(points, model, &Whitening::Same(1.0), start, &mut scratch);
+        tile.fill(&points.touches, chain, &Whitening::Same(1.0), start, &mut scratch);
         for i in 0..TILE.min(count - start) {
-            let mut sigma = Matrix3::from_diagonal_element(noise.seat_mm.powi(2));
+            let mut sigma = Matrix3::from_diagonal_element(own(start + i));
             for (encoder, s) in noise.encoder_rad.iter().enumerate() {
-                let last = 4 * encoder >= joint_columns;
-                let column = if last { joint_columns + 3 } else { 4 * encoder };
+                let column = chain.encoder_column(encoder);
                 let moved = Vector3::from_fn(|c, _| s * tile.values(c, column)[i]);
                 sigma += moved * moved.transpose();
             }

@@ -4,22 +4,24 @@
 //! r = w (‖p(q) - p(q')‖ - L)      ∂r = w u · (∂p(q) - ∂p(q'))      u = (p(q) - p(q')) / ‖p(q) - p(q')‖
 //! ```
 
-use super::{Considered, Model, Noise, Readings, Unknowns, Unweighted, Weighing, Writer};
+mod kernels;
+
+use super::{At, Dimension, Model, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal};
 use crate::error::Result;
-use crate::kinematics::batch::{forward, gradient, gradient_between, scratch_len};
-use crate::kinematics::{Chain, Poses};
+use crate::kinematics::batch::{scratch_len, tips_of_probe_mm};
+use crate::kinematics::{Angles, Poses, Sample};
 use crate::simd::Columns;
-use crate::simd::Lanes;
 use crate::solver::BLOCK_ROWS;
-use pulp::{Arch, Simd, WithSimd};
-use rand_distr::{Distribution, StandardNormal};
+use kernels::{LengthOp, VarianceOp};
+use pulp::Arch;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Rows of two poses and a length, in runs of one probe each.
 #[derive(Debug, Clone)]
 pub struct Lengths {
     runs: Vec<Run>,
-    considered: Vec<Considered>,
+    /// the length, where it is not known exactly: what is added to that of every row
+    dimensions: Vec<Dimension>,
     rows: usize,
 }
 
@@ -33,6 +35,8 @@ struct Run {
     /// length and root of the weight; the weight of padding is zero
     length_mm: Columns,
     weight: Columns,
+    /// the same with what a loss makes of it
+    discounted: Option<Columns>,
 }
 
 /// What one row of a file says.
@@ -42,6 +46,8 @@ pub struct LengthRows<'a> {
     pub q_rad: &'a [f64],
     /// Row-major angles of the second pose, rad.
     pub p_rad: &'a [f64],
+    /// How warm the arm was, as in [`Angles`].
+    pub warmth_k: &'a [f64],
     /// Which probe took each row.
     pub probe: &'a [usize],
     /// Calibrated distance of each row, mm.
@@ -49,8 +55,9 @@ pub struct LengthRows<'a> {
 }
 
 impl Lengths {
-    /// Rows of an arm of `encoders` joints. `u_mm` is the standard uncertainty of the length, common to all rows.
-    pub fn new(name: &str, encoders: usize, data: LengthRows, u_mm: f64) -> Lengths {
+    /// Rows of an arm of `encoders` joints. `u_mm` is the standard uncertainty of the length, common to all rows; `fitted`:
+    /// it is an unknown of the fit within that.
+    pub fn new(name: &str, encoders: usize, data: LengthRows, u_mm: f64, fitted: bool) -> Lengths {
         let probes = data.probe.iter().max().map_or(0, |&p| p + 1);
         let mut runs = Vec::new();
         for probe in 0..probes {
@@ -61,15 +68,17 @@ impl Lengths {
             let length: Vec<f64> = rows.iter().map(|&r| data.length_mm[r]).collect();
             runs.push(Run {
                 probe,
-                from: Poses::gathered(data.q_rad, encoders, &rows),
-                to: Poses::gathered(data.p_rad, encoders, &rows),
+                from: Poses::gathered(Angles { q_rad: data.q_rad, warmth_k: data.warmth_k }, encoders, &rows),
+                to: Poses::gathered(Angles { q_rad: data.p_rad, warmth_k: data.warmth_k }, encoders, &rows),
                 length_mm: Columns::from_rows(&length, 1),
                 weight: ones(rows.len()),
+                discounted: None,
                 rows,
             });
         }
-        let considered = Considered { name: format!("artefact.{name}.length"), u_mm };
-        Lengths { runs, considered: if u_mm > 0.0 { vec![considered] } else { vec![] }, rows: data.probe.len() }
+        let first_mm = data.length_mm.first().copied().unwrap_or(0.0);
+        let length = Dimension { name: format!("artefact.{name}.length"), value_mm: first_mm, u_mm, fitted };
+        Lengths { runs, dimensions: if u_mm > 0.0 { vec![length] } else { vec![] }, rows: data.probe.len() }
     }
 }
 
@@ -103,8 +112,8 @@ impl Readings for Lengths {
         (0..probes).map(|p| self.runs.iter().any(|run| run.probe == p)).collect()
     }
 
-    fn considered(&self) -> &[Considered] {
-        &self.considered
+    fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
     }
 
     fn sin_cos_bytes(&self) -> usize {
@@ -119,7 +128,8 @@ impl Readings for Lengths {
         }
     }
 
-    fn weigh(&mut self, model: &Model, noise: Option<&Noise>, _: Weighing) {
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, _: Weighing) {
+        let model = at.model;
         let mut scratch = [vec![0.0; scratch_len(&model.chain)], vec![0.0; scratch_len(&model.chain)]];
         for run in &mut self.runs {
             let mut weight = ones(run.rows.len());
@@ -138,25 +148,36 @@ impl Readings for Lengths {
                 }
             }
             run.weight = weight;
+            run.discounted = None;
+        }
+    }
+
+    fn discount(&mut self, factors: Option<&[f64]>) {
+        for run in &mut self.runs {
+            run.discounted = factors.map(|factors| {
+                let mut weight = run.weight.clone();
+                weight.column_mut(0).iter_mut().zip(&run.rows).for_each(|(w, &row)| *w *= factors[row]);
+                weight
+            });
         }
     }
 
     fn weight_squared_sum(&self) -> f64 {
-        let run_sum = |run: &Run| run.weight.column(0).iter().map(|w| w * w).sum::<f64>();
+        let run_sum = |run: &Run| run.weights().column(0).iter().map(|w| w * w).sum::<f64>();
         self.runs.iter().map(run_sum).sum()
     }
 
-    fn stream(&self, model: &Model, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
-        let joint_columns = model.chain.joint_parameter_count();
-        let considered = self.considered.len();
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
+        let model = at.model;
+        let probes = model.tips_mm.len();
+        let parameters = model.chain.parameter_columns();
+        let residual = parameters + self.dimensions.len();
         for run in &self.runs {
-            let residual = joint_columns + 3 + considered;
-            let parameter = |column: usize| match column {
-                c if c < joint_columns => unknowns.parameters[c],
-                c if c < joint_columns + 3 => unknowns.parameters[c + 3 * run.probe],
-                c => unknowns.considered[c - joint_columns - 3],
+            let unknown = |column: usize| match model.chain.parameter_of(column, run.probe, probes) {
+                Some(parameter) => unknowns.parameters[parameter],
+                None => unknowns.dimensions[column - parameters],
             };
-            let targets = (0..residual).filter_map(|c| Some((c, parameter(c)?)));
+            let targets = (0..residual).filter_map(|c| Some((c, unknown(c)?)));
             out.layout(residual, targets.filter(|_| jacobian))?;
             let rows = run.length_mm.column(0).len();
             for start in (0..rows).step_by(BLOCK_ROWS) {
@@ -166,8 +187,9 @@ impl Readings for Lengths {
                     tip: model.tips_mm[run.probe],
                     run,
                     start,
+                    added_mm: self.added_mm(at),
                     jacobian,
-                    considered: considered > 0,
+                    dimension: !self.dimensions.is_empty(),
                     out,
                 });
                 out.flush()?;
@@ -176,34 +198,53 @@ impl Readings for Lengths {
         Ok(())
     }
 
-    fn unweighted(&self, model: &Model) -> Unweighted {
+    fn unweighted(&self, at: At) -> Unweighted {
         let mut residuals_mm = vec![0.0; self.rows];
         let mut weights = vec![0.0; self.rows];
         for run in &self.runs {
-            let distance = run.distances(model);
+            let distance = run.distances(at.model);
             for (k, &row) in run.rows.iter().enumerate() {
-                residuals_mm[row] = distance[k] - run.length_mm.column(0)[k];
-                weights[row] = run.weight.column(0)[k];
+                residuals_mm[row] = distance[k] - run.length_mm.column(0)[k] - self.added_mm(at);
+                weights[row] = run.weights().column(0)[k];
             }
         }
         Unweighted { components: 1, residuals_mm, weights }
     }
 
-    fn sample_poses(&self, most: usize) -> Vec<(usize, Vec<f64>)> {
+    fn whitened(&self, at: At) -> Whitened {
+        let mut norms = self.unweighted(at).residuals_mm;
+        for run in &self.runs {
+            for (&row, weight) in run.rows.iter().zip(run.weight.column(0)) {
+                norms[row] = (norms[row] * weight).abs();
+            }
+        }
+        Whitened { norms, freedoms: vec![1.0; self.rows] }
+    }
+
+    fn samples(&self, most: usize) -> Vec<Sample> {
         let step = (2 * self.rows).div_ceil(most.max(1)).max(1);
         let run_poses = |run: &Run| {
             let poses = (0..run.rows.len()).step_by(step);
-            poses.flat_map(|k| [(run.probe, run.from.pose(k)), (run.probe, run.to.pose(k))]).collect::<Vec<_>>()
+            poses.flat_map(|k| [run.from.sample(k, run.probe), run.to.sample(k, run.probe)]).collect::<Vec<_>>()
         };
         self.runs.iter().flat_map(run_poses).collect()
     }
 
-    fn redrawn(&self, truth: &Model, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+    fn warmth_range_k(&self) -> Option<(f64, f64)> {
+        let ranges = self.runs.iter().filter_map(|run| run.from.warmth_range_k());
+        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+    }
+
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
         let mut drawn = self.clone();
-        let artefact_error = self.considered.first().map_or(0.0, |c| c.u_mm * normal(rng));
+        // the length is what it is; its calibration is drawn anew
+        let artefact_error = self.dimensions.first().map_or(0.0, |c| c.u_mm * normal(rng));
+        if let (Some(dimension), Some(&length)) = (drawn.dimensions.first_mut(), truth.dimensions_mm.first()) {
+            dimension.value_mm = length + artefact_error;
+        }
         for run in &mut drawn.runs {
-            let from = run.tips(truth, &run.from);
-            let to = run.tips(truth, &run.to);
+            let from = run.tips(truth.model, &run.from);
+            let to = run.tips(truth.model, &run.to);
             for k in 0..run.rows.len() {
                 let distance = (0..3)
                     .map(|j| {
@@ -233,6 +274,7 @@ impl Readings for Lengths {
                 to: run.to.picked(&picked),
                 length_mm: run.length_mm.picked(&picked),
                 weight: run.weight.picked(&picked),
+                discounted: run.discounted.as_ref().map(|weight| weight.picked(&picked)),
             });
         }
         let mut next = 0;
@@ -240,7 +282,7 @@ impl Readings for Lengths {
             run.rows = (next..next + run.rows.len()).collect();
             next += run.rows.len();
         }
-        Box::new(Lengths { runs, considered: self.considered.clone(), rows: next })
+        Box::new(Lengths { runs, dimensions: self.dimensions.clone(), rows: next })
     }
 
     fn boxed(&self) -> Box<dyn Readings> {
@@ -248,14 +290,22 @@ impl Readings for Lengths {
     }
 }
 
-pub(super) fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
-    StandardNormal.sample(rng)
+impl Lengths {
+    /// What the length's dimension adds to the length of every row.
+    fn added_mm(&self, at: At) -> f64 {
+        let dimension = self.dimensions.first().zip(at.dimensions_mm.first());
+        dimension.map_or(0.0, |(dimension, value)| value - dimension.value_mm)
+    }
 }
 
 impl Run {
+    fn weights(&self) -> &Columns {
+        self.discounted.as_ref().unwrap_or(&self.weight)
+    }
+
     fn tips(&self, model: &Model, poses: &Poses) -> Columns {
         let mut out = Columns::zeros(3, self.rows.len());
-        crate::kinematics::batch::tips_of_probe_mm(&model.chain, poses, model.tips_mm[self.probe], &mut out);
+        tips_of_probe_mm(&model.chain, poses, model.tips_mm[self.probe], &mut out);
         out
     }
 
@@ -263,100 +313,5 @@ impl Run {
         let (from, to) = (self.tips(model, &self.from), self.tips(model, &self.to));
         let squared = |k: usize, j: usize| (from.column(j)[k] - to.column(j)[k]).powi(2);
         (0..self.rows.len()).map(|k| (0..3).map(|j| squared(k, j)).sum::<f64>().sqrt()).collect()
-    }
-}
-
-/// Both tips of vector `k`: distance, and direction from the second to the first.
-#[inline(always)]
-fn between<S: Simd>(
-    simd: S,
-    chain: &Chain,
-    run: &Run,
-    k: usize,
-    tip: [f64; 3],
-    scratch: &mut [Vec<f64>; 2],
-) -> (Lanes<S>, [Lanes<S>; 3]) {
-    let tip = tip.map(|t| Lanes::splat(simd, t));
-    let p = forward(simd, chain, &run.from, k, tip, &mut scratch[0]);
-    let q = forward(simd, chain, &run.to, k, tip, &mut scratch[1]);
-    let delta = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let squared = delta[2].mul_add(delta[2], delta[1].mul_add(delta[1], delta[0] * delta[0]));
-    let distance = squared.sqrt();
-    let inverse = distance.reciprocal_or_zero();
-    (distance, delta.map(|d| d * inverse))
-}
-
-struct LengthOp<'a, 'b> {
-    chain: &'a Chain,
-    tip: [f64; 3],
-    run: &'a Run,
-    start: usize,
-    jacobian: bool,
-    considered: bool,
-    out: &'a mut Writer<'b>,
-}
-
-impl WithSimd for LengthOp<'_, '_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let block = &mut self.out.block;
-        let scratch = &mut self.out.scratch;
-        for v in 0..block.rows / S::F64_LANES {
-            let k = self.start / S::F64_LANES + v;
-            let (distance, u) = between(simd, self.chain, self.run, k, self.tip, scratch);
-            let weight = self.run.weight.load(simd, 0, k);
-            let length = self.run.length_mm.load(simd, 0, k);
-            block.columns.store(block.residual, v, (distance - length) * weight);
-            if !self.jacobian {
-                continue;
-            }
-            let last_turn = self.chain.joint_parameter_count() + 3;
-            let direction = u.map(|x| x * weight);
-            let scratch = [scratch[0].as_slice(), scratch[1].as_slice()];
-            gradient_between(simd, self.chain, scratch, direction, |column, value| {
-                if column < last_turn {
-                    block.columns.store(column, v, value);
-                }
-            });
-            if self.considered {
-                block.columns.store(last_turn, v, -weight);
-            }
-        }
-    }
-}
-
-struct VarianceOp<'a> {
-    chain: &'a Chain,
-    tip: [f64; 3],
-    run: &'a Run,
-    noise: &'a Noise,
-    variance: &'a mut [f64],
-    scratch: &'a mut [Vec<f64>; 2],
-}
-
-impl WithSimd for VarianceOp<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let joint_columns = self.chain.joint_parameter_count();
-        for k in 0..self.variance.len() / S::F64_LANES {
-            let (_, u) = between(simd, self.chain, self.run, k, self.tip, self.scratch);
-            let mut variance = Lanes::splat(simd, 2.0 * self.noise.seat_mm.powi(2));
-            for scratch in self.scratch.iter() {
-                gradient(simd, self.chain, scratch, u, |column, per_rad| {
-                    let encoder = match column {
-                        c if c < joint_columns && c % 4 == 0 => c / 4,
-                        c if c == joint_columns + 3 => joint_columns / 4,
-                        _ => return,
-                    };
-                    if let Some(&sigma) = self.noise.encoder_rad.get(encoder) {
-                        let moved = per_rad * Lanes::splat(simd, sigma);
-                        variance = moved.mul_add(moved, variance);
-                    }
-                });
-            }
-            variance.store(self.variance, k);
-        }
     }
 }

@@ -1,27 +1,36 @@
 //! The one assembly: an arm, readings, and what is free become a least-squares problem.
 
-use crate::arm::{Arm, JointModel, Unit};
+mod add;
+mod parameters;
+
+use crate::arm::{Arm, Unit};
 use crate::error::{Error, Result};
-use crate::residuals::length::{LengthRows, Lengths};
-use crate::residuals::points::{Features, PointRows, Points};
-use crate::residuals::{Model, Noise, Readings, Unweighted, Weighing};
-use nalgebra::Vector3;
+use crate::kinematics::Sample;
+use crate::losses::Loss;
+use crate::priors::Prior;
+use crate::residuals::{At, Dimension, Model, Noise, Readings, Unweighted, Weighing, Whitened, normal};
+pub use add::BallArtefact;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Readings of features of placed artefacts, to be explained by one arm.
+///
+/// Its parameters are the arm's, then the fitted dimensions of its artefacts.
 #[derive(Debug)]
 pub struct Problem {
     arm: Arm,
     noise: Option<Noise>,
     groups: Vec<Box<dyn Readings>>,
+    /// for each group's dimensions, which parameter each is
+    slots: Vec<Vec<Option<usize>>>,
+    stated_priors: Vec<Prior>,
+    /// what a whitened residual of one stands for: priors are weighed with it
+    unit: f64,
+    loss: Option<Loss>,
 }
 
 impl Clone for Problem {
     fn clone(&self) -> Self {
-        Problem {
-            arm: self.arm.clone(),
-            noise: self.noise.clone(),
-            groups: self.groups.iter().map(|g| g.boxed()).collect(),
-        }
+        self.with_groups(self.groups.iter().map(|g| g.boxed()).collect())
     }
 }
 
@@ -56,68 +65,7 @@ impl Problem {
         }
         // noise of nothing weighs nothing: the same as none
         let noise = noise.filter(|n| n.seat_mm > 0.0 || n.encoder_rad.iter().any(|&s| s > 0.0));
-        Ok(Problem { arm, noise, groups: vec![] })
-    }
-
-    /// Adds rows of two poses and a length; returns the group's number.
-    ///
-    /// # Errors
-    /// Shapes that do not agree, an unknown probe, a value that is not finite, a length that is not positive.
-    pub fn add_lengths(&mut self, name: &str, rows: LengthRows, u_mm: f64) -> Result<usize> {
-        let count = rows.length_mm.len();
-        self.check_angles("first poses", rows.q_rad, count)?;
-        self.check_angles("second poses", rows.p_rad, count)?;
-        self.check_probes(rows.probe, count)?;
-        for &value in rows.length_mm {
-            if !(1e-6..=MOST_MM).contains(&value) {
-                return Err(Error::OutOfRange {
-                    what: format!("a length of artefact {name}, mm,"),
-                    value,
-                    expected: "a number from 1e-6 to 1e7",
-                });
-            }
-        }
-        check_uncertainty(name, u_mm)?;
-        let group = Lengths::new(name, self.arm.encoders(), rows, u_mm);
-        Ok(self.push(Box::new(group)))
-    }
-
-    /// Adds readings of an artefact's features; returns the group's number.
-    ///
-    /// # Errors
-    /// Shapes that do not agree, an unknown probe or feature, a value that is not finite.
-    pub fn add_points(&mut self, features: &Features, rows: PointRows) -> Result<usize> {
-        let count = rows.feature.len();
-        self.check_angles("poses", rows.q_rad, count)?;
-        self.check_probes(rows.probe, count)?;
-        for &index in rows.feature {
-            if index >= features.coordinates_mm.len() {
-                return Err(Error::NoSuch {
-                    what: "feature",
-                    index: index as i64,
-                    count: features.coordinates_mm.len(),
-                });
-            }
-        }
-        for &value in features.coordinates_mm.iter().flatten() {
-            if value.is_nan() || value.abs() > MOST_MM {
-                return Err(Error::OutOfRange {
-                    what: format!("a coordinate of artefact {}, mm,", features.name),
-                    value,
-                    expected: "a number from -1e7 to 1e7",
-                });
-            }
-        }
-        if rows.placement.len() != count {
-            return Err(Error::Shape {
-                what: "the placement labels".into(),
-                got: rows.placement.len(),
-                expected: count,
-            });
-        }
-        check_uncertainty(features.name, features.u_mm)?;
-        let group = Points::new(features, self.arm.encoders(), rows);
-        Ok(self.push(Box::new(group)))
+        Ok(Problem { arm, noise, groups: vec![], slots: vec![], stated_priors: vec![], unit: 1.0, loss: None })
     }
 
     fn push(&mut self, mut group: Box<dyn Readings>) -> usize {
@@ -125,30 +73,25 @@ impl Problem {
         if kept + group.sin_cos_bytes() <= KEEP_BYTES {
             group.keep_sin_cos();
         }
+        let mut next = self.parameter_count();
+        let slot = |dimension: &Dimension| {
+            next += usize::from(dimension.fitted);
+            dimension.fitted.then(|| next - 1)
+        };
+        let slots = group.dimensions().iter().map(slot).collect();
+        self.slots.push(slots);
         self.groups.push(group);
         self.groups.len() - 1
     }
 
-    fn check_angles(&self, what: &str, angles: &[f64], rows: usize) -> Result<()> {
-        let expected = rows * self.arm.encoders();
-        if angles.len() != expected {
-            return Err(Error::Shape { what: format!("the {what}"), got: angles.len(), expected });
-        }
-        match angles.iter().find(|v| !v.is_finite()) {
-            Some(&value) => Err(Error::NotFinite { what: format!("an angle of the {what}"), value }),
-            None => Ok(()),
-        }
+    /// Judges residuals by a loss that lets outliers count for less; none: by their squares.
+    pub fn set_loss(&mut self, loss: Option<Loss>) {
+        self.loss = loss;
     }
 
-    fn check_probes(&self, probe: &[usize], rows: usize) -> Result<()> {
-        if probe.len() != rows {
-            return Err(Error::Shape { what: "the probe indices".into(), got: probe.len(), expected: rows });
-        }
-        let count = self.arm.probes().len();
-        match probe.iter().find(|&&p| p >= count) {
-            Some(&p) => Err(Error::NoSuch { what: "probe", index: p as i64, count }),
-            None => Ok(()),
-        }
+    /// The loss, if residuals are not judged by their squares.
+    pub fn loss(&self) -> Option<Loss> {
+        self.loss
     }
 
     /// The arm at its start values.
@@ -171,9 +114,31 @@ impl Problem {
         &self.groups
     }
 
-    /// The same problem with other readings.
+    /// For each group's dimensions, which parameter each is.
+    pub(crate) fn slots(&self) -> &[Vec<Option<usize>>] {
+        &self.slots
+    }
+
+    /// The same problem with other readings of the same artefacts.
     pub(crate) fn with_groups(&self, groups: Vec<Box<dyn Readings>>) -> Problem {
-        Problem { arm: self.arm.clone(), noise: self.noise.clone(), groups }
+        Problem {
+            arm: self.arm.clone(),
+            noise: self.noise.clone(),
+            groups,
+            slots: self.slots.clone(),
+            stated_priors: self.stated_priors.clone(),
+            unit: self.unit,
+            loss: self.loss,
+        }
+    }
+
+    /// Calls `each` with every group and where it is looked at.
+    fn for_each_at(&self, parameters: &[f64], mut each: impl FnMut(&dyn Readings, At)) {
+        let mut model = Model::new(&self.arm);
+        model.set_parameters(&parameters[..self.arm.parameter_count()]);
+        for (group, dimensions_mm) in self.groups.iter().zip(self.dimensions_at(parameters)) {
+            each(group.as_ref(), At { model: &model, dimensions_mm: &dimensions_mm });
+        }
     }
 
     /// About `most` of the readings, evenly chosen, every group represented.
@@ -185,6 +150,21 @@ impl Problem {
             thin
         };
         self.with_groups(self.groups.iter().map(|g| thin(g.as_ref())).collect())
+    }
+
+    /// About `most` of the readings as a search for the arm wants them: as lengths where they can be told so, artefacts as
+    /// they are calibrated.
+    pub(crate) fn for_search(&self, most: usize) -> Problem {
+        let mut searched = self.thinned(most);
+        let groups = std::mem::take(&mut searched.groups);
+        searched.slots.clear();
+        for group in groups {
+            searched.push(group.as_lengths().unwrap_or(group));
+        }
+        let arm_parameters = self.arm.parameter_count();
+        searched.stated_priors.retain(|prior| prior.parameter < arm_parameters);
+        searched.weigh(&searched.parameters(), Weighing::Even);
+        searched
     }
 
     /// Number of readings.
@@ -205,15 +185,6 @@ impl Problem {
     /// Whether the base frame is fixed by nothing: every artefact stands freely.
     pub fn base_free(&self) -> bool {
         self.groups.iter().all(|g| g.mirror_free() || g.placement_unknowns() > 0)
-    }
-
-    /// Parameters that only move the base frame, where nothing fixes it: theta0 of joint 1, and d of a DH joint 1.
-    pub fn base_parameters(&self) -> Vec<usize> {
-        match (self.base_free(), self.arm.joints()[0].model) {
-            (false, _) => vec![],
-            (true, JointModel::Dh) => vec![0, 3],
-            (true, JointModel::Hayati) => vec![0],
-        }
     }
 
     /// Whether the mirror image of the arm explains the readings as well.
@@ -237,9 +208,15 @@ impl Problem {
         used
     }
 
-    /// About `most` of the poses of the readings: probe and angles.
-    pub fn sample_poses(&self, most: usize) -> Vec<(usize, Vec<f64>)> {
-        self.groups.iter().flat_map(|g| g.sample_poses(most)).collect()
+    /// About `most` of the poses of each group's readings.
+    pub fn samples(&self, most: usize) -> Vec<Sample> {
+        self.groups.iter().flat_map(|g| g.samples(most)).collect()
+    }
+
+    /// Lowest and highest temperature above 20 °C of all readings, where it is known.
+    pub fn warmth_range_k(&self) -> Option<(f64, f64)> {
+        let ranges = self.groups.iter().filter_map(|g| g.warmth_range_k());
+        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
     }
 
     /// Longest reach with any probe, mm.
@@ -249,14 +226,13 @@ impl Problem {
 
     /// The same at other parameters.
     pub fn reach_at_mm(&self, parameters: &[f64]) -> f64 {
-        self.arm.with_parameters(parameters).map_or(f64::MAX, |arm| longest_reach_mm(&arm))
+        self.arm_at(parameters).map_or(f64::MAX, |arm| longest_reach_mm(&arm))
     }
 
     /// Residuals of every group at some parameters, and the root mean square of a reading's residual, mm.
     pub fn unweighted(&self, parameters: &[f64]) -> (Vec<Unweighted>, f64) {
-        let mut model = Model::new(&self.arm);
-        model.set_parameters(parameters);
-        let groups: Vec<Unweighted> = self.groups.iter().map(|g| g.unweighted(&model)).collect();
+        let mut groups: Vec<Unweighted> = Vec::new();
+        self.for_each_at(parameters, |group, at| groups.push(group.unweighted(at)));
         let squares: f64 = groups.iter().flat_map(|g| &g.residuals_mm).map(|r| r * r).sum();
         let rms = (squares / self.readings().max(1) as f64).sqrt();
         (groups, rms)
@@ -272,13 +248,39 @@ impl Problem {
         self.weighs_encoders() && self.groups.iter().any(|g| g.equations() > g.len())
     }
 
-    /// Weighs the readings for the stated noise at some parameters.
+    /// Weighs the readings for the stated noise at some parameters; what a loss made of them is forgotten.
     pub fn weigh(&mut self, parameters: &[f64], how: Weighing) {
         let mut model = Model::new(&self.arm);
-        model.set_parameters(parameters);
-        for group in &mut self.groups {
-            group.weigh(&model, self.noise.as_ref(), how);
+        model.set_parameters(&parameters[..self.arm.parameter_count()]);
+        let dimensions = self.dimensions_at(parameters);
+        for (group, dimensions_mm) in self.groups.iter_mut().zip(&dimensions) {
+            group.weigh(At { model: &model, dimensions_mm }, self.noise.as_ref(), how);
         }
+    }
+
+    /// Residuals of every group as a loss judges them.
+    pub fn whitened(&self, parameters: &[f64]) -> Vec<Whitened> {
+        let mut groups = Vec::new();
+        self.for_each_at(parameters, |group, at| groups.push(group.whitened(at)));
+        groups
+    }
+
+    /// Weighs each reading of each group by a further factor; none: by one.
+    pub(crate) fn discount(&mut self, factors: Option<&[Vec<f64>]>) {
+        for (number, group) in self.groups.iter_mut().enumerate() {
+            group.discount(factors.map(|factors| factors[number].as_slice()));
+        }
+    }
+
+    /// The same readings, exact at these parameters, with new noise; priors and artefacts calibrated anew.
+    pub(crate) fn redrawn(&self, truth: &[f64], noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Problem {
+        let mut groups = Vec::new();
+        self.for_each_at(truth, |group, at| groups.push(group.redrawn(at, noise, rng)));
+        let mut drawn = self.with_groups(groups);
+        for prior in &mut drawn.stated_priors {
+            prior.value = truth[prior.parameter] + prior.u * normal(rng);
+        }
+        drawn
     }
 }
 
@@ -298,26 +300,12 @@ fn check_size(arm: &Arm) -> Result<()> {
         let (most, expected) = match unit {
             Unit::Mm => (MOST_MM, "at most 10 km (1e7 mm)"),
             Unit::Rad => (MOST_RAD, "at most 10000 rad"),
+            Unit::PerKelvin => (1.0, "at most 1/K"),
+            Unit::RadPerNewtonMetre => (MOST_RAD, "at most 10000 rad/(N m)"),
         };
         if value.abs() > most {
             return Err(Error::OutOfRange { what: format!("{name}, {},", unit.as_str()), value, expected });
         }
     }
     Ok(())
-}
-
-fn check_uncertainty(name: &str, u_mm: f64) -> Result<()> {
-    if u_mm.is_finite() && u_mm >= 0.0 {
-        return Ok(());
-    }
-    Err(Error::OutOfRange {
-        what: format!("the uncertainty of artefact {name}"),
-        value: u_mm,
-        expected: "a number not below zero",
-    })
-}
-
-/// A tip's distance from the last axis, mm.
-pub(crate) fn off_axis_mm(tip_mm: [f64; 3]) -> f64 {
-    Vector3::from(tip_mm).xy().norm()
 }

@@ -1,58 +1,15 @@
-//! An arm: joints from the base to the probe, and the probes it carries.
+//! An arm: joints from the base to the probe, the probes it carries, and what it does beyond its geometry.
 //!
 //! `turn_i = sign_i * q_i - theta0_i`; see [`crate::kinematics`] for the map. Lengths are mm, angles rad, always.
-//! The order of parameters is fixed: four for each joint but the last, then x, y, z of each probe.
+//! The order of parameters is fixed: four for each joint but the last (for all of an arm with a full last link), then
+//! x, y, z of each probe, then those of its [`effects`].
+
+pub mod effects;
+mod joint;
 
 use crate::error::{Error, Result};
-
-/// How the step from one joint's frame to the next is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointModel {
-    /// `Rz(turn) · Tz(d) · Tx(a) · Rx(alpha)` (Denavit and Hartenberg 1955).
-    Dh,
-    /// `Rz(turn) · Tx(a) · Rx(alpha) · Ry(beta)` (Hayati 1983), for an axis nearly parallel to the next.
-    Hayati,
-}
-
-/// Geometry of one joint but the last.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Joint {
-    /// Encoder reading at which the joint's turn is zero, rad (after the sign).
-    pub theta0_rad: f64,
-    /// Twist from this axis to the next, rad.
-    pub alpha_rad: f64,
-    /// Link length, mm (`l` in Cheng 2011).
-    pub a_mm: f64,
-    /// Offset along this axis, mm ([`JointModel::Dh`]); unused for Hayati.
-    pub d_mm: f64,
-    /// Second tilt of the next axis, rad ([`JointModel::Hayati`]); unused for DH.
-    pub beta_rad: f64,
-    /// +1 or -1: whether the encoder counts with the joint's axis or against it.
-    pub sign: f64,
-    /// How the four numbers are used.
-    pub model: JointModel,
-}
-
-impl Joint {
-    /// The joint's four parameters in the order of [`Arm::parameter_names`].
-    pub fn parameters(&self) -> [f64; 4] {
-        let last = match self.model {
-            JointModel::Dh => self.d_mm,
-            JointModel::Hayati => self.beta_rad,
-        };
-        [self.theta0_rad, self.alpha_rad, self.a_mm, last]
-    }
-
-    /// The same joint with other numbers, in the same order.
-    pub fn with_parameters(&self, p: &[f64]) -> Joint {
-        let mut joint = Joint { theta0_rad: p[0], alpha_rad: p[1], a_mm: p[2], ..*self };
-        match self.model {
-            JointModel::Dh => joint.d_mm = p[3],
-            JointModel::Hayati => joint.beta_rad = p[3],
-        }
-        joint
-    }
-}
+pub use effects::{Body, Compliance, Effects, Expansion, Harmonics};
+pub use joint::{Joint, JointModel};
 
 /// A probe: a name and the tip, a point that turns with the last joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,14 +27,20 @@ pub enum Unit {
     Rad,
     /// millimetre
     Mm,
+    /// part of a length for each kelvin
+    PerKelvin,
+    /// radian for each newton metre
+    RadPerNewtonMetre,
 }
 
 impl Unit {
-    /// `"rad"` or `"mm"`.
+    /// `"rad"`, `"mm"`, `"1/K"` or `"rad/(N m)"`.
     pub fn as_str(self) -> &'static str {
         match self {
             Unit::Rad => "rad",
             Unit::Mm => "mm",
+            Unit::PerKelvin => "1/K",
+            Unit::RadPerNewtonMetre => "rad/(N m)",
         }
     }
 }
@@ -86,8 +49,10 @@ impl Unit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     joints: Vec<Joint>,
-    last_sign: f64,
+    /// the sign of a last joint that has no geometry of its own
+    bare_last: Option<f64>,
     probes: Vec<Probe>,
+    effects: Effects,
 }
 
 impl Arm {
@@ -96,14 +61,34 @@ impl Arm {
     /// # Errors
     /// No joint before the last, no probe, a sign that is not ±1, or a number that is not finite.
     pub fn new(joints: Vec<Joint>, last_sign: f64, probes: Vec<Probe>) -> Result<Arm> {
-        if joints.is_empty() {
-            return Err(Error::TooFewJoints(joints.len() + 1));
+        Arm { joints, bare_last: Some(last_sign), probes, effects: Effects::default() }.checked()
+    }
+
+    /// An arm of `joints.len()` encoders whose last joint has a link of its own, to which the probes are fixed: four
+    /// parameters more than needed, as in some models of the literature (Gao 2009; Santolaria and Aguilar 2010).
+    ///
+    /// # Errors
+    /// As [`Arm::new`].
+    pub fn with_full_last_link(joints: Vec<Joint>, probes: Vec<Probe>) -> Result<Arm> {
+        Arm { joints, bare_last: None, probes, effects: Effects::default() }.checked()
+    }
+
+    /// The same arm with other effects beyond its geometry.
+    ///
+    /// # Errors
+    /// Another number of joints in them, or a number that is not finite.
+    pub fn with_effects(&self, effects: Effects) -> Result<Arm> {
+        Arm { effects, ..self.clone() }.checked()
+    }
+
+    fn checked(self) -> Result<Arm> {
+        if self.encoders() < 2 {
+            return Err(Error::TooFewJoints(self.encoders()));
         }
-        if probes.is_empty() {
+        if self.probes.is_empty() {
             return Err(Error::NoProbe);
         }
-        let arm = Arm { joints, last_sign, probes };
-        for (i, sign) in arm.signs().enumerate() {
+        for (i, sign) in self.signs().enumerate() {
             if sign.abs() != 1.0 {
                 return Err(Error::OutOfRange {
                     what: format!("the sign of joint {}", i + 1),
@@ -112,20 +97,26 @@ impl Arm {
                 });
             }
         }
-        for (name, value) in arm.parameter_names().into_iter().zip(arm.parameters()) {
+        self.effects.check(self.encoders())?;
+        for (name, value) in self.parameter_names().into_iter().zip(self.parameters()) {
             if !value.is_finite() {
                 return Err(Error::NotFinite { what: name, value });
             }
         }
-        Ok(arm)
+        Ok(self)
     }
 
     /// Number of encoders, n.
     pub fn encoders(&self) -> usize {
-        self.joints.len() + 1
+        self.joints.len() + usize::from(self.bare_last.is_some())
     }
 
-    /// The joints with geometry: all but the last.
+    /// Whether the last joint has a link of its own.
+    pub fn has_full_last_link(&self) -> bool {
+        self.bare_last.is_none()
+    }
+
+    /// The joints with geometry: all but a bare last one.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
@@ -137,17 +128,37 @@ impl Arm {
 
     /// The sign of every encoder, the last included.
     pub fn signs(&self) -> impl Iterator<Item = f64> + '_ {
-        self.joints.iter().map(|j| j.sign).chain(std::iter::once(self.last_sign))
+        self.joints.iter().map(|j| j.sign).chain(self.bare_last)
     }
 
-    /// Number of parameters of the joints, 4(n-1).
+    /// The same arm with other signs, one for each encoder, each +1 or -1.
+    pub fn with_signs(&self, signs: &[f64]) -> Arm {
+        let mut arm = self.clone();
+        arm.joints.iter_mut().zip(signs).for_each(|(joint, &sign)| joint.sign = sign);
+        if let (Some(last), Some(&sign)) = (&mut arm.bare_last, signs.last()) {
+            *last = sign;
+        }
+        arm
+    }
+
+    /// What the arm does beyond its geometry.
+    pub fn effects(&self) -> &Effects {
+        &self.effects
+    }
+
+    /// Number of parameters of the joints' geometry, 4(n-1), or 4n with a full last link.
     pub fn joint_parameter_count(&self) -> usize {
         4 * self.joints.len()
     }
 
-    /// Number of all parameters, 4(n-1) + 3 for each probe.
-    pub fn parameter_count(&self) -> usize {
+    /// Number of parameters of joints and probes: where those of the effects begin.
+    pub fn geometry_count(&self) -> usize {
         self.joint_parameter_count() + 3 * self.probes.len()
+    }
+
+    /// Number of all parameters.
+    pub fn parameter_count(&self) -> usize {
+        self.geometry_count() + self.effects.count()
     }
 
     /// Index of the first of a probe's three parameters.
@@ -168,6 +179,7 @@ impl Arm {
         for probe in &self.probes {
             names.extend(["x", "y", "z"].map(|axis| format!("probe.{}.{axis}", probe.name)));
         }
+        names.extend(self.effects.all().flat_map(|effect| effect.names()));
         names
     }
 
@@ -181,15 +193,18 @@ impl Arm {
                 JointModel::Hayati => Unit::Rad,
             });
         }
-        units.resize(self.parameter_count(), Unit::Mm);
+        units.resize(self.geometry_count(), Unit::Mm);
+        for effect in self.effects.all() {
+            units.resize(units.len() + effect.values().len(), effect.unit());
+        }
         units
     }
 
-    /// All parameters, rad and mm.
+    /// All parameters, in [`Arm::parameter_units`].
     pub fn parameters(&self) -> Vec<f64> {
         let joints = self.joints.iter().flat_map(Joint::parameters);
         let tips = self.probes.iter().flat_map(|p| p.tip_mm);
-        joints.chain(tips).collect()
+        joints.chain(tips).chain(self.effects.all().flat_map(|effect| effect.values())).collect()
     }
 
     /// The same arm with other numbers.
@@ -204,14 +219,33 @@ impl Arm {
                 expected: self.parameter_count(),
             });
         }
-        let (joints, tips) = parameters.split_at(self.joint_parameter_count());
-        let joints = self.joints.iter().zip(joints.chunks_exact(4));
-        let probes = self.probes.iter().zip(tips.chunks_exact(3));
-        Arm::new(
-            joints.map(|(j, p)| j.with_parameters(p)).collect(),
-            self.last_sign,
-            probes.map(|(probe, t)| Probe { name: probe.name.clone(), tip_mm: [t[0], t[1], t[2]] }).collect(),
-        )
+        let mut arm = self.clone();
+        let (geometry, effects) = parameters.split_at(self.geometry_count());
+        let (joints, tips) = geometry.split_at(self.joint_parameter_count());
+        for (joint, p) in arm.joints.iter_mut().zip(joints.chunks_exact(4)) {
+            *joint = joint.with_parameters(p);
+        }
+        for (probe, tip) in arm.probes.iter_mut().zip(tips.chunks_exact(3)) {
+            probe.tip_mm.copy_from_slice(tip);
+        }
+        arm.effects.set(effects);
+        arm.checked()
+    }
+
+    /// The joint that a parameter belongs to, counted from 0; none for a probe's tip.
+    pub fn joint_of(&self, parameter: usize) -> Option<usize> {
+        if parameter < self.joint_parameter_count() {
+            return Some(parameter / 4);
+        }
+        let mut first = self.geometry_count();
+        for effect in self.effects.all() {
+            let count = effect.values().len();
+            if (first..first + count).contains(&parameter) {
+                return Some((parameter - first) * effect.joints() / count);
+            }
+            first += count;
+        }
+        None
     }
 
     /// Sum of the lengths of all links and the tip, mm: nothing is farther from the base.

@@ -1,0 +1,214 @@
+//! Gravity's moments about the axes and what depends on them, for vectors of poses.
+//!
+//! The moment about axis i is `∂/∂turn_i` of `pull · S`, with S the mass times centre of all that the arm carries:
+//! a point of many kilograms, carried to the base as the tip is. A tip that follows the moments by weights `w_i` follows a
+//! parameter by the gradient of `Σ w_i M_i`: the derivative of `pull · S` along the turns w, differentiated once more, by
+//! carrying S together with its tangent out and their adjoints back.
+
+use crate::arm::Compliance;
+use crate::kinematics::Poses;
+use crate::kinematics::chain::Chain;
+use crate::simd::Lanes;
+use pulp::Simd;
+
+/// What an arm carries, as the kernels use it.
+#[derive(Debug, Clone)]
+pub(in crate::kinematics) struct Carried {
+    pub(in crate::kinematics) rad_per_nm: Vec<f64>,
+    /// mass times centre of the body that moves with each joint, kg mm
+    first_moments: Vec<[f64; 3]>,
+    /// mass of all that moves with each joint, kg
+    masses: Vec<f64>,
+    /// gravity, N m for each kg mm
+    pull: [f64; 3],
+}
+
+impl Carried {
+    pub(in crate::kinematics) fn new(compliance: &Compliance) -> Carried {
+        let bodies = &compliance.bodies;
+        let beyond = |i: usize| bodies[i..].iter().map(|body| body.mass_kg).sum();
+        Carried {
+            rad_per_nm: compliance.rad_per_nm.clone(),
+            first_moments: bodies.iter().map(|body| body.centre_mm.map(|c| c * body.mass_kg)).collect(),
+            masses: (0..bodies.len()).map(beyond).collect(),
+            pull: compliance.pull(),
+        }
+    }
+}
+
+/// Vectors remembered for each joint.
+pub(in crate::kinematics) const SLOTS: usize = 17;
+/// Sine and cosine of the turn; S before the turn (x, y), before the shift (z) and before beta (x, z).
+const SIN: usize = 0;
+const COS: usize = 1;
+const BODY: usize = 2;
+/// The pull, in the same frame as S before the turn.
+const PULL: usize = 7;
+const MOMENT: usize = 10;
+/// As BODY, of the tangent.
+const TANGENT: usize = 11;
+const WEIGHT: usize = 16;
+
+/// A vector of the region and joint `i`.
+#[inline(always)]
+fn load<S: Simd>(simd: S, region: &[f64], i: usize, slot: usize) -> Lanes<S> {
+    Lanes::load(simd, region, i * SLOTS + slot)
+}
+
+/// Carries all weight of vector `k` of poses to the base and the pull back out: leaves the moments in the region.
+#[inline(always)]
+pub(in crate::kinematics) fn prepare<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    carried: &Carried,
+    poses: &Poses,
+    k: usize,
+    region: &mut [f64],
+) {
+    let c = |value: f64| Lanes::splat(simd, value);
+    let [mut x, mut y, mut z] = [c(0.0); 3];
+    for (i, link) in chain.links.iter().enumerate().rev() {
+        let slot = i * SLOTS;
+        let body = carried.first_moments[i];
+        let mass = carried.masses[i];
+        (x, y, z) = (x + c(body[0]), y + c(body[1]), z + c(body[2]));
+        if let Some((cos_beta, sin_beta)) = link.beta {
+            let before = x;
+            x = z.mul_add(c(sin_beta), before * c(cos_beta));
+            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
+            x.store(region, slot + BODY + 3);
+            z.store(region, slot + BODY + 4);
+        }
+        if !link.bare {
+            let before = y;
+            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
+            z.store(region, slot + BODY + 2);
+            x = x + c(mass * link.a);
+            z = z + c(mass * link.d);
+        }
+        let (sin, cos) = poses.turn(simd, link, i, k);
+        sin.store(region, slot + SIN);
+        cos.store(region, slot + COS);
+        x.store(region, slot + BODY);
+        y.store(region, slot + BODY + 1);
+        let before = x;
+        x = y.neg_mul_add(sin, before * cos);
+        y = before.mul_add(sin, y * cos);
+    }
+    let [mut gx, mut gy, mut gz] = carried.pull.map(c);
+    for (i, link) in chain.links.iter().enumerate() {
+        let (sin, cos) = (load(simd, region, i, SIN), load(simd, region, i, COS));
+        let before = gx;
+        gx = gy.mul_add(sin, before * cos);
+        gy = before.neg_mul_add(sin, gy * cos);
+        let (x, y) = (load(simd, region, i, BODY), load(simd, region, i, BODY + 1));
+        for (axis, g) in [gx, gy, gz].into_iter().enumerate() {
+            g.store(region, i * SLOTS + PULL + axis);
+        }
+        x.mul_add(gy, -(y * gx)).store(region, i * SLOTS + MOMENT);
+        if link.bare {
+            continue;
+        }
+        let before = gy;
+        gy = gz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+        gz = before.neg_mul_add(c(link.sin_alpha), gz * c(link.cos_alpha));
+        if let Some((cos_beta, sin_beta)) = link.beta {
+            let before = gx;
+            gx = gz.neg_mul_add(c(sin_beta), before * c(cos_beta));
+            gz = before.mul_add(c(sin_beta), gz * c(cos_beta));
+        }
+    }
+}
+
+/// Gravity's moment about axis `i`, N m.
+#[inline(always)]
+pub(in crate::kinematics) fn moment<S: Simd>(simd: S, region: &[f64], i: usize) -> Lanes<S> {
+    load(simd, region, i, MOMENT)
+}
+
+/// Remembers how far the tip follows the moment about axis `i`.
+#[inline(always)]
+pub(in crate::kinematics) fn weigh<S: Simd>(region: &mut [f64], i: usize, weight: Lanes<S>) {
+    weight.store(region, i * SLOTS + WEIGHT);
+}
+
+/// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn, alpha, a and d or beta.
+#[inline(always)]
+pub(in crate::kinematics) fn derivatives<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    carried: &Carried,
+    region: &mut [f64],
+    mut each: impl FnMut(usize, [Lanes<S>; 4]),
+) {
+    let c = |value: f64| Lanes::splat(simd, value);
+    let zero = c(0.0);
+    // the tangent of S along the turns w, carried to the base
+    let [mut x, mut y, mut z] = [zero; 3];
+    for (i, link) in chain.links.iter().enumerate().rev() {
+        let slot = i * SLOTS;
+        if let Some((cos_beta, sin_beta)) = link.beta {
+            let before = x;
+            x = z.mul_add(c(sin_beta), before * c(cos_beta));
+            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
+            x.store(region, slot + TANGENT + 3);
+            z.store(region, slot + TANGENT + 4);
+        }
+        if !link.bare {
+            let before = y;
+            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
+            z.store(region, slot + TANGENT + 2);
+            y.store(region, slot + TANGENT + 1);
+        }
+        let w = load(simd, region, i, WEIGHT);
+        // what joint i adds, still before its turn: w z × S
+        let (turned_x, turned_y) =
+            (load(simd, region, i, BODY + 1).neg_mul_add(w, x), load(simd, region, i, BODY).mul_add(w, y));
+        // of the frame after the turn are x and y; the link's own y stays as it is
+        turned_x.store(region, slot + TANGENT);
+        let (sin, cos) = (load(simd, region, i, SIN), load(simd, region, i, COS));
+        x = turned_y.neg_mul_add(sin, turned_x * cos);
+        y = turned_x.mul_add(sin, turned_y * cos);
+    }
+    // the adjoint of S, carried back out; that of the tangent is the pull
+    let [mut hx, mut hy, mut hz] = [zero; 3];
+    for (i, link) in chain.links.iter().enumerate() {
+        let at = |slot: usize| load(simd, region, i, slot);
+        let (sin, cos, w) = (at(SIN), at(COS), at(WEIGHT));
+        let before = hx;
+        hx = hy.mul_add(sin, before * cos);
+        hy = before.neg_mul_add(sin, hy * cos);
+        let (x, y, link_y) = (at(BODY), at(BODY + 1), at(TANGENT + 1));
+        let (gx, gy, gz) = (at(PULL), at(PULL + 1), at(PULL + 2));
+        let turned_x = at(TANGENT);
+        let turned_y = x.mul_add(w, if link.bare { zero } else { link_y });
+        let turn = x.mul_add(hy, -(y * hx)) + turned_x.mul_add(gy, -(turned_y * gx));
+        hx = gy.mul_add(w, hx);
+        hy = gx.neg_mul_add(w, hy);
+        if link.bare {
+            each(i, [turn, zero, zero, zero]);
+            continue;
+        }
+        let mass = c(carried.masses[i]);
+        let (z, link_z) = (at(BODY + 2), at(TANGENT + 2));
+        let alpha = hz.mul_add(y, -(hy * z)) + gz.mul_add(link_y, -(gy * link_z));
+        let (a, d) = (hx * mass, hz * mass);
+        let before = hy;
+        hy = hz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+        hz = before.neg_mul_add(c(link.sin_alpha), hz * c(link.cos_alpha));
+        let mut fourth = d;
+        if let Some((cos_beta, sin_beta)) = link.beta {
+            // the pull in the frame between alpha and beta
+            let between = gz.mul_add(c(link.cos_alpha), -(gy * c(link.sin_alpha)));
+            let (x, z) = (at(BODY + 3), at(BODY + 4));
+            let (tangent_x, tangent_z) = (at(TANGENT + 3), at(TANGENT + 4));
+            fourth = hx.mul_add(z, -(hz * x)) + gx.mul_add(tangent_z, -(between * tangent_x));
+            let before = hx;
+            hx = hz.neg_mul_add(c(sin_beta), before * c(cos_beta));
+            hz = before.mul_add(c(sin_beta), hz * c(cos_beta));
+        }
+        each(i, [turn, alpha, a, fourth]);
+    }
+}

@@ -1,0 +1,387 @@
+//! The forward map and its derivatives for a vector of poses: no allocation in the loop.
+//!
+//! A point is carried from the tip to the base (`forward`), remembering in each joint's frame what the derivatives
+//! need. A direction is carried back from the base to the tip (`gradient`), giving the derivative of `direction · p`
+//! with respect to every parameter on the way: about as much work as the map itself. Every residual is such a
+//! direction or three, so the 3 × parameters Jacobian of a pose is never formed.
+
+use super::compliance;
+use crate::kinematics::Poses;
+use crate::kinematics::chain::{Chain, Link};
+use crate::simd::{Lanes, PAD};
+use pulp::{NullaryFnOnce, Simd};
+
+/// Vectors remembered for each joint: sin and cos of the turn, X, Y and z of the point, and x, z before beta.
+const SLOTS: usize = 7;
+/// And of an arm with effects: sin and cos of the encoder angle, warmth and stretch of the link.
+const EFFECT_SLOTS: usize = 4;
+
+/// Where things stand in the scratch of a chain, in vectors.
+#[derive(Clone, Copy)]
+struct Layout {
+    effects: usize,
+    tip: usize,
+    compliance: usize,
+    kept: usize,
+    end: usize,
+}
+
+impl Layout {
+    #[inline(always)]
+    fn of(chain: &Chain) -> Layout {
+        let n = chain.links.len();
+        let effects = n * SLOTS;
+        let tip = effects + n * EFFECT_SLOTS;
+        let compliance = tip + 3;
+        let kept = compliance + if chain.compliance.is_some() { n * compliance::SLOTS } else { 0 };
+        Layout { effects, tip, compliance, kept, end: kept + chain.turn_column() + 1 }
+    }
+}
+
+/// Numbers of scratch that [`forward`] needs for a chain.
+pub(crate) fn scratch_len(chain: &Chain) -> usize {
+    Layout::of(chain).end * PAD
+}
+
+/// The part of the scratch from some vector on.
+#[inline(always)]
+fn region<S: Simd>(scratch: &mut [f64], from: usize) -> &mut [f64] {
+    let from = from * S::F64_LANES;
+    let whole = (scratch.len() - from) / S::F64_LANES * S::F64_LANES;
+    &mut scratch[from..from + whole]
+}
+
+/// Carries the tip of vector `k` of poses to the base; leaves in `scratch` what [`gradient`] needs.
+#[inline(always)]
+pub(crate) fn forward<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    poses: &Poses,
+    k: usize,
+    tip: [Lanes<S>; 3],
+    scratch: &mut [f64],
+) -> [Lanes<S>; 3] {
+    if chain.has_effects() {
+        // apart, so that the plain map stays small
+        return simd.vectorize(ForwardWithEffects { simd, chain, poses, k, tip, scratch });
+    }
+    carry(
+        simd,
+        chain,
+        tip,
+        scratch,
+        #[inline(always)]
+        |_, i, link| (poses.turn(simd, link, i, k), None),
+    )
+}
+
+struct ForwardWithEffects<'a, S: Simd> {
+    simd: S,
+    chain: &'a Chain,
+    poses: &'a Poses,
+    k: usize,
+    tip: [Lanes<S>; 3],
+    scratch: &'a mut [f64],
+}
+
+impl<S: Simd> NullaryFnOnce for ForwardWithEffects<'_, S> {
+    type Output = [Lanes<S>; 3];
+    #[inline(always)]
+    fn call(self) -> [Lanes<S>; 3] {
+        let ForwardWithEffects { simd, chain, poses, k, tip, scratch } = self;
+        forward_with_effects(simd, chain, poses, k, tip, scratch)
+    }
+}
+
+#[inline(always)]
+fn forward_with_effects<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    poses: &Poses,
+    k: usize,
+    tip: [Lanes<S>; 3],
+    scratch: &mut [f64],
+) -> [Lanes<S>; 3] {
+    let c = |value: f64| Lanes::splat(simd, value);
+    let layout = Layout::of(chain);
+    if let Some(carried) = &chain.compliance {
+        compliance::prepare(simd, chain, carried, poses, k, region::<S>(scratch, layout.compliance));
+    }
+    let last = chain.links.len() - 1;
+    let stretch = |i: usize| {
+        let epsilon = chain.expansion.as_ref().map_or(0.0, |each| each[i]);
+        poses.warmth(simd, i, k).mul_add(c(epsilon), c(1.0))
+    };
+    let own = |scratch: &mut [f64], i: usize, slot: usize, value: Lanes<S>| {
+        value.store(scratch, layout.effects + i * EFFECT_SLOTS + slot);
+    };
+    for (axis, value) in tip.into_iter().enumerate() {
+        value.store(scratch, layout.tip + axis);
+    }
+    let stretched = tip.map(|value| value * stretch(last));
+    carry(
+        simd,
+        chain,
+        stretched,
+        scratch,
+        #[inline(always)]
+        |scratch, i, link| {
+            let mut added = c(0.0);
+            if let Some(harmonics) = &chain.harmonics {
+                let (sin_q, cos_q) = poses.sin_cos_q(simd, i, k);
+                own(scratch, i, 0, sin_q);
+                own(scratch, i, 1, cos_q);
+                added = harmonics.added(simd, i, sin_q, cos_q) * c(link.sign);
+            }
+            if let Some(carried) = &chain.compliance {
+                let moment = compliance::moment(simd, region::<S>(scratch, layout.compliance), i);
+                added = moment.mul_add(c(carried.rad_per_nm[i]), added);
+            }
+            let (sin, cos) = poses.turn(simd, link, i, k);
+            let (sin_added, cos_added) = added.sin_cos();
+            let turn = (sin.mul_add(cos_added, cos * sin_added), sin.neg_mul_add(sin_added, cos * cos_added));
+            own(scratch, i, 2, poses.warmth(simd, i, k));
+            own(scratch, i, 3, stretch(i));
+            (turn, Some(stretch(i)))
+        },
+    )
+}
+
+/// Carries a point to the base; `turn` gives sine and cosine of each turn, and how far the link is stretched.
+#[inline(always)]
+fn carry<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    tip: [Lanes<S>; 3],
+    scratch: &mut [f64],
+    mut turn: impl FnMut(&mut [f64], usize, &Link) -> ((Lanes<S>, Lanes<S>), Option<Lanes<S>>),
+) -> [Lanes<S>; 3] {
+    let c = |value: f64| Lanes::splat(simd, value);
+    let [mut x, mut y, mut z] = tip;
+    for (i, link) in chain.links.iter().enumerate().rev() {
+        let slot = i * SLOTS;
+        let ((sin, cos), stretch) = turn(scratch, i, link);
+        if let Some((cos_beta, sin_beta)) = link.beta {
+            let before = x;
+            x = z.mul_add(c(sin_beta), before * c(cos_beta));
+            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
+            x.store(scratch, slot + 5);
+            z.store(scratch, slot + 6);
+        }
+        if !link.bare {
+            let before = y;
+            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
+            z.store(scratch, slot + 4);
+            (x, z) = match stretch {
+                None => (x + c(link.a), z + c(link.d)),
+                Some(stretch) => (stretch.mul_add(c(link.a), x), stretch.mul_add(c(link.d), z)),
+            };
+        }
+        sin.store(scratch, slot);
+        cos.store(scratch, slot + 1);
+        x.store(scratch, slot + 2);
+        y.store(scratch, slot + 3);
+        let before = x;
+        x = y.neg_mul_add(sin, before * cos);
+        y = before.mul_add(sin, y * cos);
+    }
+    [x, y, z]
+}
+
+/// Carries a direction of the base frame to the tip after [`forward`] and emits the derivative of `direction · p` in each
+/// of the columns of [`Chain`].
+#[inline(always)]
+pub(crate) fn gradient<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    scratch: &mut [f64],
+    direction: [Lanes<S>; 3],
+    mut emit: impl FnMut(usize, Lanes<S>),
+) {
+    if chain.has_effects() {
+        let kept = simd.vectorize(ColumnsWithEffects { simd, chain, scratch, direction });
+        return (0..=chain.turn_column()).for_each(|column| emit(column, Lanes::load(simd, kept, column)));
+    }
+    let mut g = direction;
+    for (i, link) in chain.links.iter().enumerate() {
+        let columns = through(simd, link, i, scratch, &mut g);
+        place(chain, i, columns, &mut emit);
+    }
+    let first = chain.joint_parameter_count();
+    g.into_iter().enumerate().for_each(|(axis, value)| emit(first + axis, value));
+}
+
+/// [`gradient`] of `direction · (p - p')` for two poses at once: the difference is emitted, written once.
+#[inline(always)]
+pub(crate) fn gradient_between<S: Simd>(
+    simd: S,
+    chain: &Chain,
+    scratch: &mut [Vec<f64>; 2],
+    direction: [Lanes<S>; 3],
+    mut emit: impl FnMut(usize, Lanes<S>),
+) {
+    let [first, second] = scratch;
+    if chain.has_effects() {
+        let first = simd.vectorize(ColumnsWithEffects { simd, chain, scratch: first, direction });
+        let second = simd.vectorize(ColumnsWithEffects { simd, chain, scratch: second, direction });
+        let kept = |columns: &[f64], column| Lanes::load(simd, columns, column);
+        let difference = |column| kept(first, column) - kept(second, column);
+        return (0..=chain.turn_column()).for_each(|column| emit(column, difference(column)));
+    }
+    let (mut g, mut h) = (direction, direction);
+    for (i, link) in chain.links.iter().enumerate() {
+        let columns = through(simd, link, i, first, &mut g);
+        let others = through(simd, link, i, second, &mut h);
+        let difference = [0, 1, 2, 3].map(|k| columns[k] - others[k]);
+        place(chain, i, difference, &mut emit);
+    }
+    let at = chain.joint_parameter_count();
+    (0..3).for_each(|axis| emit(at + axis, g[axis] - h[axis]));
+}
+
+/// Emits what joint `i` has: the derivatives with respect to its turn, alpha, a and d or beta.
+#[inline(always)]
+fn place<S: Simd>(
+    chain: &Chain,
+    i: usize,
+    [turn, alpha, a, fourth]: [Lanes<S>; 4],
+    emit: &mut impl FnMut(usize, Lanes<S>),
+) {
+    if !chain.links[i].bare {
+        emit(4 * i, -turn);
+        emit(4 * i + 1, alpha);
+        emit(4 * i + 2, a);
+        emit(4 * i + 3, fourth);
+    }
+    if i + 1 == chain.links.len() {
+        emit(chain.turn_column(), turn);
+    }
+}
+
+struct ColumnsWithEffects<'a, S: Simd> {
+    simd: S,
+    chain: &'a Chain,
+    scratch: &'a mut [f64],
+    direction: [Lanes<S>; 3],
+}
+
+impl<'a, S: Simd> NullaryFnOnce for ColumnsWithEffects<'a, S> {
+    type Output = &'a mut [f64];
+    #[inline(always)]
+    fn call(self) -> &'a mut [f64] {
+        columns_with_effects(self.simd, self.chain, self.scratch, self.direction)
+    }
+}
+
+/// All columns of the derivative of `direction · p`, those of the effects too, in the part of the scratch returned.
+#[inline(always)]
+fn columns_with_effects<'a, S: Simd>(
+    simd: S,
+    chain: &Chain,
+    scratch: &'a mut [f64],
+    direction: [Lanes<S>; 3],
+) -> &'a mut [f64] {
+    let layout = Layout::of(chain);
+    let joints = chain.joint_parameter_count();
+    let last = chain.links.len() - 1;
+    let harmonic = joints + 3;
+    let expansion = harmonic + chain.harmonics.as_ref().map_or(0, |h| h.of_joint() * (last + 1));
+    let compliant = expansion + chain.expansion.as_ref().map_or(0, Vec::len);
+    let (below, kept) = scratch.split_at_mut(layout.kept * S::F64_LANES);
+    let kept = region::<S>(kept, 0);
+    let mut g = direction;
+    for (i, link) in chain.links.iter().enumerate() {
+        let [turn, alpha, a, fourth] = through(simd, link, i, below, &mut g);
+        let own = |slot: usize| Lanes::load(simd, below, layout.effects + i * EFFECT_SLOTS + slot);
+        if let Some(harmonics) = &chain.harmonics {
+            let signed = turn * Lanes::splat(simd, link.sign);
+            let first = harmonic + i * harmonics.of_joint();
+            harmonics.waves(
+                own(0),
+                own(1),
+                #[inline(always)]
+                |number, cos, sin| {
+                    (signed * cos).store(kept, first + 2 * number);
+                    (signed * sin).store(kept, first + 2 * number + 1);
+                },
+            );
+        }
+        let stretch = own(3);
+        let (along_d, fourth) = match link.beta {
+            None => (fourth, fourth * stretch),
+            Some(_) => (Lanes::splat(simd, 0.0), fourth),
+        };
+        if chain.expansion.is_some() {
+            let length = |value: f64| Lanes::splat(simd, value);
+            let grown = if link.bare { length(0.0) } else { a.mul_add(length(link.a), along_d * length(link.d)) };
+            (own(2) * grown).store(kept, expansion + i);
+        }
+        place(chain, i, [turn, alpha, a * stretch, fourth], &mut |column, value| value.store(kept, column));
+    }
+    let own = |slot: usize| Lanes::load(simd, below, layout.effects + last * EFFECT_SLOTS + slot);
+    let mut grown = Lanes::splat(simd, 0.0);
+    for (axis, value) in g.into_iter().enumerate() {
+        (value * own(3)).store(kept, joints + axis);
+        grown = value.mul_add(Lanes::load(simd, below, layout.tip + axis), grown);
+    }
+    if chain.expansion.is_some() {
+        let link = Lanes::load(simd, kept, expansion + last);
+        grown.mul_add(own(2), link).store(kept, expansion + last);
+    }
+    if let Some(carried) = &chain.compliance {
+        let weight = region::<S>(below, layout.compliance);
+        for (i, link) in chain.links.iter().enumerate() {
+            let turn =
+                if link.bare { Lanes::load(simd, kept, chain.turn_column()) } else { -Lanes::load(simd, kept, 4 * i) };
+            (turn * compliance::moment(simd, weight, i)).store(kept, compliant + i);
+            compliance::weigh(weight, i, turn * Lanes::splat(simd, carried.rad_per_nm[i]));
+        }
+        compliance::derivatives(
+            simd,
+            chain,
+            carried,
+            weight,
+            #[inline(always)]
+            |i, added| {
+                place(chain, i, added, &mut |column, value| {
+                    (Lanes::load(simd, kept, column) + value).store(kept, column);
+                });
+            },
+        );
+    }
+    kept
+}
+
+/// Carries a direction through joint `i`; returns the derivatives with respect to its turn, alpha, a and d or beta.
+#[inline(always)]
+fn through<S: Simd>(simd: S, link: &Link, i: usize, scratch: &[f64], direction: &mut [Lanes<S>; 3]) -> [Lanes<S>; 4] {
+    let c = |value: f64| Lanes::splat(simd, value);
+    let at = |slot: usize| Lanes::load(simd, scratch, i * SLOTS + slot);
+    let [mut gx, mut gy, mut gz] = *direction;
+    let (sin, cos, x, y) = (at(0), at(1), at(2), at(3));
+    let before = gx;
+    gx = gy.mul_add(sin, before * cos);
+    gy = before.neg_mul_add(sin, gy * cos);
+    // direction · (z × p) = x gy - y gx
+    let turn = x.mul_add(gy, -(y * gx));
+    if link.bare {
+        *direction = [gx, gy, gz];
+        return [turn, c(0.0), c(0.0), c(0.0)];
+    }
+    let z = at(4);
+    let (alpha, a, d) = (gz.mul_add(y, -(gy * z)), gx, gz);
+    let before = gy;
+    gy = gz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
+    gz = before.neg_mul_add(c(link.sin_alpha), gz * c(link.cos_alpha));
+    let mut fourth = d;
+    if let Some((cos_beta, sin_beta)) = link.beta {
+        let (x, z) = (at(5), at(6));
+        fourth = gx.mul_add(z, -(gz * x));
+        let before = gx;
+        gx = gz.neg_mul_add(c(sin_beta), before * c(cos_beta));
+        gz = before.mul_add(c(sin_beta), gz * c(cos_beta));
+    }
+    *direction = [gx, gy, gz];
+    [turn, alpha, a, fourth]
+}
