@@ -239,7 +239,6 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
         problem.discount(solution.factors.as_deref());
     }
     let whitened = problem.whitened(&solution.parameters);
-    let standing = Standing::of(&whitened, least_scatter(problem));
     // what the readings determine does not depend on what a loss made of some of them
     problem.discount(None);
     let mut judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
@@ -254,6 +253,7 @@ pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &d
     let placement_unknowns = problem.placement_unknowns();
     let unknowns = placement_unknowns + judged.decomposition.rank;
     let degrees_of_freedom = (observations + priors.iter().flatten().count()).saturating_sub(unknowns);
+    let standing = Standing::of(&whitened, degrees_of_freedom as f64, least_scatter(problem));
     let per_dof = (degrees_of_freedom > 0).then(|| match problem.loss() {
         None => solution.report.cost / degrees_of_freedom as f64,
         Some(_) => standing.pooled_scale(&whitened).powi(2),

@@ -1,7 +1,7 @@
 //! Which readings are far off, in units of the scatter of their own kind, and what a loss makes of them.
 //!
-//! A reading's placement takes part in it, so that its residual is smaller than its error: lengths are judged against the
-//! degrees of freedom that the reading has left. The scatter of each group is taken from the median of its lengths,
+//! A reading's placement follows it, and so does the arm, so that its residual is smaller than its error: lengths are
+//! judged against the degrees of freedom that the reading has left. The scatter of each group is taken from the median of its lengths,
 //! which half of them could not move (Hampel 1974).
 
 use crate::losses::{Loss, median_length, rare_length};
@@ -19,27 +19,36 @@ pub struct Standing {
 }
 
 /// Degrees of freedom below which a residual shows nothing.
-const NO_FREEDOM: f64 = 1e-9;
+const NO_FREEDOM: f64 = 1e-6;
+/// A fit of nearly as many parameters as equations leaves residuals that say nothing of the errors.
+const LEAST_LEFT: f64 = 1e-3;
 
 impl Standing {
-    /// Of whitened residuals. Scatter below `least` is none: rounding.
-    pub fn of(whitened: &[Whitened], least: f64) -> Standing {
-        Standing::with_scales(whitened, |lengths| median(lengths).max(least))
+    /// Of the whitened residuals of a fit with so many degrees of freedom. Scatter below `least` is none: rounding.
+    pub fn of(whitened: &[Whitened], degrees_of_freedom: f64, least: f64) -> Standing {
+        Standing::with_scales(whitened, degrees_of_freedom, |lengths| median(lengths).max(least))
     }
 
     /// The same, the scatter of each group being known.
-    pub fn again(&self, whitened: &[Whitened]) -> Standing {
+    pub fn again(&self, whitened: &[Whitened], degrees_of_freedom: f64) -> Standing {
         let mut scales = self.scales.iter();
-        Standing::with_scales(whitened, |_| scales.next().copied().unwrap_or(1.0))
+        Standing::with_scales(whitened, degrees_of_freedom, |_| scales.next().copied().unwrap_or(1.0))
     }
 
-    fn with_scales(whitened: &[Whitened], mut scale: impl FnMut(&mut Vec<f64>) -> f64) -> Standing {
+    fn with_scales(
+        whitened: &[Whitened],
+        degrees_of_freedom: f64,
+        mut scale: impl FnMut(&mut Vec<f64>) -> f64,
+    ) -> Standing {
         let mut standing = Standing::default();
+        let all: f64 = whitened.iter().flat_map(|group| &group.freedoms).sum();
+        // what the fitted parameters take is taken from all readings alike
+        let left = if all > 0.0 { (degrees_of_freedom / all).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
         for group in whitened {
             let dimensions: Vec<f64> = group.freedoms.iter().map(|freedom| freedom.clamp(1.0, 3.0)).collect();
             let each = group.norms.iter().zip(&group.freedoms).zip(&dimensions);
             let length = |((norm, freedom), dimension): ((&f64, &f64), &f64)| {
-                if *freedom > NO_FREEDOM { norm * (dimension / freedom).sqrt() } else { 0.0 }
+                if *freedom > NO_FREEDOM { norm * (dimension / (freedom * left)).sqrt() } else { 0.0 }
             };
             let mut lengths: Vec<f64> = each.map(length).collect();
             let free = group.freedoms.iter().zip(&lengths).zip(&dimensions);
@@ -71,19 +80,24 @@ impl Standing {
         self.lengths[group].iter().zip(&self.dimensions[group]).map(|(&t, &d)| t > rare_length(d))
     }
 
-    /// The variance of a whitened residual that gives a robust fit its covariance, `E[ψ²] / E[ψ']²` (Huber 1981, 7.6), of
-    /// `freedoms` degrees of freedom in all.
-    pub fn variance(&self, whitened: &[Whitened], loss: Loss, freedoms: f64) -> f64 {
-        let (mut squares, mut slopes, mut count) = (0.0, 0.0, 0.0);
+    /// The variance of a whitened residual that gives a robust fit its covariance: `K² E[ψ²] / E[ψ']²`, with
+    /// `K = 1 + p/n var(ψ') / E[ψ']²` for the share p/n that the fitted parameters have (Huber 1981, section 7.6).
+    pub fn variance(&self, whitened: &[Whitened], loss: Loss, degrees_of_freedom: f64) -> f64 {
+        let (mut squares, mut slopes, mut slopes_squared, mut count) = (0.0, 0.0, 0.0, 0.0);
         for ((group, lengths), dimensions) in whitened.iter().zip(&self.lengths).zip(&self.dimensions) {
             for (((norm, freedom), &t), &d) in group.norms.iter().zip(&group.freedoms).zip(lengths).zip(dimensions) {
                 let tuning = loss.tuning(d);
+                let slope = loss.weight(t, tuning) + loss.slope(t, tuning) / d;
                 squares += (loss.weight(t, tuning) * norm).powi(2);
-                slopes += freedom * (loss.weight(t, tuning) + loss.slope(t, tuning) / d);
+                slopes += freedom * slope;
+                slopes_squared += freedom * slope * slope;
                 count += freedom;
             }
         }
-        squares / freedoms / (slopes / count).powi(2)
+        let slope = slopes / count;
+        let spread = slopes_squared / count / (slope * slope) - 1.0;
+        let fitted = (1.0 - degrees_of_freedom / count).max(0.0);
+        squares / degrees_of_freedom * ((1.0 + fitted * spread) / slope).powi(2)
     }
 
     /// Scatter over all groups, by their degrees of freedom.

@@ -11,10 +11,11 @@ use crate::solver::lm::Report;
 const REWEIGHINGS: usize = 4;
 /// Rounds of a loss or of priors, which go on until the parameters stand still.
 const ROUNDS: usize = 100;
-/// Rounds in which outliers pull as with Huber's loss, whose minimum is the only one, before a loss lets go of them; and
-/// after which the scatter is no longer estimated anew, so that the rounds end.
-const GENTLE_ROUNDS: usize = 6;
-const ESTIMATING_ROUNDS: usize = 12;
+/// Rounds in which outliers pull as with Huber's loss, whose minimum is the only one, before a loss lets go of them. From
+/// then on the scatter stays as it was found (an MM-estimate, Yohai 1987), and the rounds end.
+const GENTLE_ROUNDS: usize = 12;
+/// What a reading counts that counts for nothing: a placement of nothing but such readings must still stand somewhere.
+const NOTHING: f64 = 1e-12;
 /// Parameters stand still that move no tip by more than this part of the reach.
 const STILL: f64 = 1e-10;
 /// Scatter of less than this part of the stated noise, or of the arm's reach, is none.
@@ -77,13 +78,14 @@ impl Settling {
             // placements stand where the readings that count put them
             problem.discount(self.factors.as_deref());
             let whitened = problem.whitened(parameters);
+            let fitted = self.degrees_of_freedom;
             let standing = match &self.standing {
-                Some(standing) if self.round >= ESTIMATING_ROUNDS => standing.again(&whitened),
-                _ => Standing::of(&whitened, least_scatter(problem)),
+                Some(standing) if self.round >= GENTLE_ROUNDS => standing.again(&whitened, fitted),
+                _ => Standing::of(&whitened, fitted, least_scatter(problem)),
             };
             let loss = if self.round < GENTLE_ROUNDS { Loss::Huber } else { loss };
             let mut factors = standing.weights(loss);
-            factors.iter_mut().flatten().for_each(|weight| *weight = weight.sqrt());
+            factors.iter_mut().flatten().for_each(|weight| *weight = weight.max(NOTHING).sqrt());
             problem.discount(Some(&factors));
             if self.scatter_unknown {
                 problem.set_unit(standing.pooled_scale(&whitened));

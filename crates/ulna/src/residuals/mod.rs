@@ -119,6 +119,21 @@ pub struct Whitened {
     pub freedoms: Vec<f64>,
 }
 
+/// A placement that takes more than this part of its readings' equations tells no reading from another.
+const FOLLOWS: f64 = 0.5;
+
+/// Where a placement follows its few readings so closely that it could make any of them look wrong, all are judged as one:
+/// they share what is left of them. (A bar touched once at each end is one length, and neither end is worse.)
+fn shared(norms: &mut [f64], freedoms: &mut [f64], components: usize) {
+    let count = norms.len() as f64;
+    let left = freedoms.iter().sum::<f64>() / count;
+    if left < FOLLOWS * components as f64 {
+        let norm = (norms.iter().map(|norm| norm * norm).sum::<f64>() / count).sqrt();
+        norms.fill(norm);
+        freedoms.fill(left);
+    }
+}
+
 /// Readings of one artefact.
 pub trait Readings: Debug + Send + Sync {
     /// Number of rows in the file.

@@ -14,7 +14,7 @@ mod whitening;
 
 use super::length::{LengthRows, Lengths};
 use super::touches::{TouchRows, Touches};
-use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal};
+use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal, shared};
 use crate::error::Result;
 use crate::kinematics::Sample;
 use crate::simd::Columns;
@@ -192,20 +192,21 @@ impl Readings for Points {
     }
 
     fn whitened(&self, at: At) -> Whitened {
-        let placed = self.placed_touches(at);
-        let norm = |row: usize| {
-            let (touch, pose) = &placed[row];
-            (self.whitening.at(row) * touch.residual(pose)).norm()
-        };
-        let free = |(rows, placement): (&Range<usize>, &Placement)| {
-            let taken = if self.frame == Frame::Free { placement.unknowns() } else { 0 };
-            vec![(3 * rows.len()).saturating_sub(taken) as f64 / rows.len() as f64; rows.len()]
-        };
-        let freedoms = self.touches.standings.iter().zip(&self.placements).flat_map(free);
-        Whitened {
-            norms: self.touches.filed((0..self.touches.len()).map(norm)),
-            freedoms: self.touches.filed(freedoms),
+        let mut placed = self.placed_touches(at);
+        // without what a loss made of them
+        placed.iter_mut().enumerate().for_each(|(row, (touch, _))| touch.whiten = self.whitening.at(row));
+        let mut norms: Vec<f64> =
+            placed.iter().map(|(touch, pose)| (touch.whiten * touch.residual(pose)).norm()).collect();
+        let mut freedoms = vec![3.0; norms.len()];
+        for (rows, placement) in self.touches.standings.iter().zip(&self.placements) {
+            if self.frame == Frame::Free {
+                let touches: Vec<Touch> = placed[rows.clone()].iter().map(|(touch, _)| *touch).collect();
+                freedoms[rows.clone()].copy_from_slice(&placement.freedoms(&placed[rows.start].1, &touches));
+                shared(&mut norms[rows.clone()], &mut freedoms[rows.clone()], 3);
+            }
         }
+        let filed = |values: Vec<f64>| self.touches.filed(values.into_iter());
+        Whitened { norms: filed(norms), freedoms: filed(freedoms) }
     }
 
     fn samples(&self, most: usize) -> Vec<Sample> {

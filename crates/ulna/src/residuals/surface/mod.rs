@@ -12,11 +12,11 @@ mod sphere;
 use super::rows::{Eliminated, Layout, Place};
 use super::tile::{Directions, TILE, Tile};
 use super::touches::{TouchRows, Touches};
-use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal};
+use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal, shared};
 use crate::error::Result;
 use crate::kinematics::Sample;
 use crate::simd::{Columns, Lanes, padded};
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 pub use plane::Plane;
 use pulp::Simd;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -293,12 +293,19 @@ impl<S: Shape> Readings for Surface<S> {
 
     fn whitened(&self, at: At) -> Whitened {
         let touched = self.touched(at);
-        let norms = touched.iter().zip(&self.weight).map(|(touch, weight)| (weight * touch.residual_mm).abs());
-        let free = |rows: &std::ops::Range<usize>| {
-            vec![rows.len().saturating_sub(UNKNOWNS) as f64 / rows.len() as f64; rows.len()]
-        };
-        let freedoms = self.touches.standings.iter().flat_map(free);
-        Whitened { norms: self.touches.filed(norms), freedoms: self.touches.filed(freedoms) }
+        let weighed = touched.iter().zip(&self.weight);
+        let mut norms: Vec<f64> = weighed.map(|(touch, weight)| (weight * touch.residual_mm).abs()).collect();
+        let mut freedoms = vec![1.0; norms.len()];
+        for rows in self.touches.standings.iter().cloned() {
+            let local = |i: usize, k: usize| self.weight[rows.start + i] * touched[rows.start + i].local[k];
+            let q = DMatrix::from_fn(rows.len(), UNKNOWNS.min(rows.len()), local).qr().q();
+            for (i, freedom) in freedoms[rows.clone()].iter_mut().enumerate() {
+                *freedom = (1.0 - q.row(i).norm_squared()).max(0.0);
+            }
+            shared(&mut norms[rows.clone()], &mut freedoms[rows], 1);
+        }
+        let filed = |values: Vec<f64>| self.touches.filed(values.into_iter());
+        Whitened { norms: filed(norms), freedoms: filed(freedoms) }
     }
 
     fn samples(&self, most: usize) -> Vec<Sample> {
