@@ -1,17 +1,19 @@
-"""Readings: CSV or Parquet tables, one touch a row (or, for lengths, two poses a row), as arrays in mm and rad."""
+"""Readings: tables of any format, one touch a row (or, for lengths, two poses a row), as arrays in mm and rad."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
 from ulna.files.checks import check_ids, check_scale
-from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, remark_unused
+from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, known_columns, remark_unused
+from ulna.files.header import Header
+from ulna.files.layout import Layout
 from ulna.files.table import file_sha256, read_header, read_table
 from ulna.files.units import RAD_PER, Units
 from ulna.model import Arm
@@ -20,31 +22,41 @@ from ulna.study import Artefact, InputFile, Readings
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-WHAT = "a readings file (CSV with commas and a header q1,q2,…, or Parquet)"
+WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 
 
 def read_readings(
-    source: Source, arm: Arm, artefacts: dict[str, Artefact], units: Units, remarks: list[str]
+    source: Source,
+    arm: Arm,
+    artefacts: dict[str, Artefact],
+    units: Units,
+    remarks: list[str],
 ) -> tuple[list[Readings], InputFile]:
     """One file's readings, a part for each artefact in it. Raises UlnaInputError; remarks are added to."""
     path = source.study.parent / source.entry.file
-    header = read_header(path, WHAT)
-    check_columns(header, arm.n, arm.name, remarks)
-    frame = read_table(header, is_numeric)
-    count = len(frame)
-    if not count:
+    frame, header = _table(path, source, arm, remarks)
+    row = np.arange(1, len(frame) + 1)
+    artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}", row)
+    parts: list[Readings] = []
+    check_ids(frame, row, header)
+    for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
+        chosen = list(artefacts.values())[index]
+        own = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
+        part = frame if len(own) == len(frame) else frame[own]
+        parts.append(_part(part, row[own], chosen, header, source, arm, units, remarks))
+    return parts, InputFile(path, file_sha256(path), len(frame))
+
+
+def _table(path: Path, source: Source, arm: Arm, remarks: list[str]) -> tuple[pl.DataFrame, Header]:
+    """The columns that are known, of all rows. Raises UlnaInputError."""
+    layout = Layout.of(source.entry, (f"{source.study}: key '{source.key}.", "'"), "[[readings]]")
+    header = read_header(path, WHAT, layout, known_columns(arm.n))
+    frame = read_table(header, is_numeric, check_columns(header, arm.n, arm.name, remarks))
+    if not len(frame):
         raise UlnaInputError(
             f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
         )
-    artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}")
-    parts: list[Readings] = []
-    check_ids(frame, header)
-    for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
-        chosen = list(artefacts.values())[index]
-        rows = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(count)
-        own = frame if len(rows) == count else frame[rows]
-        parts.append(_part(own, rows + 1, chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), count)
+    return frame, header
 
 
 def _part(
@@ -126,7 +138,7 @@ def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, 
     if (lengths < 0).any():
         first = int(np.argmax(lengths < 0))
         raise UlnaInputError(
-            f"{header.path}: {header.where(int(row[first]))}, column 'length': got {lengths[first]:g}, expected a "
+            f"{header.path}: {header.at(int(row[first]), 'length')}: got {lengths[first]:g}, expected a "
             "distance of 0 or more. Correct it."
         )
     return lengths * units.mm

@@ -14,8 +14,8 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
 from ulna.files.table import read_table
+from ulna.files.tables.text import TextTable
 from ulna.files.toml import read_bytes
 from ulna.importers.folder import write_study_folder
 from ulna.importers.robots import ur10
@@ -66,7 +66,7 @@ def import_ipa_ur10(
     """
     header = _header(path)
     used = {*JOINTS, *POSITION, TEMPERATURE}
-    frame = read_table(header, lambda column: column in used)
+    frame = read_table(header, lambda column: column in used, list(used))
     count = len(frame)
     fitted = _chosen(count, fit, every, spread, path)
     names = [f"m{row}" for row in range(1, count + 1)]
@@ -110,7 +110,7 @@ def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -
     return chosen
 
 
-def _header(path: Path) -> Header:
+def _header(path: Path) -> TextTable:
     start = read_bytes(path, WHAT, limit=1 << 14)
     columns = [name.strip() for name in start.split(b"\n", 1)[0].decode("utf-8-sig", "replace").split(";")]
     for column in (*JOINTS, *POSITION, TEMPERATURE):
@@ -118,4 +118,4 @@ def _header(path: Path) -> Header:
             raise UlnaInputError(
                 f"{path}: line 1: the column '{column}' is missing; expected {WHAT}. Name the right file."
             )
-    return Header(path, columns, is_csv=True, separator=";", decimal_comma=True)
+    return TextTable(path, columns, separator=";", decimal=",")
