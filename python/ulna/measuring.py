@@ -53,7 +53,7 @@ class MeasureJob:
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
-        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n))
+        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
         self._angle = angle
         self._rad_per = self._angle_factors(angle)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]

@@ -65,8 +65,9 @@ class PointsTable(Strict):
     """Features with calibrated coordinates: ball bar, ball plate, points from a laser tracker."""
 
     kind: Literal["points"]
-    features: Features
-    """Coordinates by name, or the path of a table with columns feature, x, y, z and perhaps u."""
+    features: Features | None = None
+    """Coordinates by name, or the path of a table with columns feature, x, y, z and perhaps u; left out where every
+    reading brings the coordinates of a point of its own, in columns x, y, z and perhaps u."""
     features_format: TableKeys | None = None
     """How the table of features is written, where it is not a CSV file with commas."""
     frame: Literal["free", "arm"] = "free"
@@ -127,6 +128,8 @@ def make_artefact(
             f"{path}: key 'artefact.{name}.features_format': says how a file is written, but the key 'features' names "
             "none. Remove it, or name the file of the features."
         )
+    if table.features is None:  # own_points.py makes them of the readings
+        return Artefact(name, "points", {}, None, (table.u or 0.0) * units.mm, table.frame), None
     if isinstance(table.features, str):
         return _from_file(name, table, path.parent / table.features, units, path, warnings)
     for feature in table.features:

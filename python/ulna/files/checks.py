@@ -108,24 +108,29 @@ def check_bar_ends(group: Readings, files: list[InputFile], study: Path) -> None
         )
 
 
-def check_repeats(group: Readings, files: list[InputFile], remarks: list[str]) -> None:
-    """Remark upon copies of a reading; raise UlnaInputError for readings that contradict each other."""
+def check_repeats(group: Readings, files: list[InputFile], remarks: list[str], own_points: bool = False) -> None:
+    """Remark upon copies of a reading; raise UlnaInputError for readings that contradict each other.
+
+    own_points: every reading touched a point of its own, measured along with it: that two differ is no contradiction.
+    """
     candidates = _same_angles(group)
     first_of: dict[bytes, list[int]] = defaultdict(list)
     for k in candidates.tolist():
         key = group.q_rad[k].tobytes() + (b"" if group.p_rad is None else group.p_rad[k].tobytes())
         first_of[key + group.probe[k].tobytes()].append(k)
     copies: list[tuple[int, int]] = []
+    points = list(group.artefact.features.values())
     for rows in first_of.values():
         seen: dict[object, int] = {}
         for k in rows:
-            where = group.placement[k] if group.artefact.frame == "free" else ""
+            standing = group.placement[k] if group.artefact.frame == "free" else ""
+            where = (standing, points[group.feature[k]] if own_points else None)
             first = seen.setdefault(where, k)
             if first == k:
                 continue
             if group.length_mm is not None and group.length_mm[k] != group.length_mm[first]:
                 raise _contradiction(group, files, first, k, "length", "the same two poses")
-            if group.feature[k] != group.feature[first]:
+            if group.feature[k] != group.feature[first] and not own_points:
                 raise _contradiction(group, files, first, k, "feature", "the same encoder angles")
             copies.append((k, first))
     copies.sort()

@@ -25,15 +25,19 @@ MOST_SHOWN = 24
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
 
+COORDINATES = ("x", "y", "z", "u")
+
+
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*", column) is not None
+    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*|[xyzu]", column) is not None
 
 
-def known_columns(joints: int) -> list[str]:
-    """The names of all columns that a readings file of an arm may have."""
+def known_columns(joints: int, coordinates: bool) -> list[str]:
+    """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
+    their own."""
     several = [f"{name}{k}" for name in ("q", "p", "temperature") for k in range(1, joints + 1)]
-    return [*NAMES, "length", "temperature", *several]
+    return [*NAMES, "length", "temperature", *several, *(COORDINATES if coordinates else ())]
 
 
 def check_columns(
@@ -41,6 +45,7 @@ def check_columns(
     joints: int,
     arm: str,
     remarks: list[str],
+    coordinates: bool = False,
 ) -> list[str]:
     """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon.
     Returns the known columns that are there."""
@@ -54,7 +59,7 @@ def check_columns(
             f"temperature, or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the "
             "header."
         )
-    known = known_columns(joints)
+    known = known_columns(joints, coordinates)
     words = [name for name in known if not name[-1].isdecimal()]
     remark_strange(header, known, words, remarks)
     return [column for column in header.columns if column in known]

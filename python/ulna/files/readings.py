@@ -14,6 +14,7 @@ from ulna.files.checks import check_ids, check_scale
 from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, known_columns, remark_unused
 from ulna.files.header import Header
 from ulna.files.layout import Layout
+from ulna.files.own_points import has_own_points, own_points
 from ulna.files.table import file_sha256, read_header, read_table
 from ulna.files.units import RAD_PER, Units
 from ulna.model import Arm
@@ -34,7 +35,7 @@ def read_readings(
 ) -> tuple[list[Readings], InputFile]:
     """One file's readings, a part for each artefact in it. Raises UlnaInputError; remarks are added to."""
     path = source.study.parent / source.entry.file
-    frame, header = _table(path, source, arm, remarks)
+    frame, header = _table(path, source, arm, artefacts, remarks)
     row = np.arange(1, len(frame) + 1)
     artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}", row)
     parts: list[Readings] = []
@@ -47,11 +48,14 @@ def read_readings(
     return parts, InputFile(path, file_sha256(path), len(frame))
 
 
-def _table(path: Path, source: Source, arm: Arm, remarks: list[str]) -> tuple[pl.DataFrame, Header]:
+def _table(
+    path: Path, source: Source, arm: Arm, artefacts: dict[str, Artefact], remarks: list[str]
+) -> tuple[pl.DataFrame, Header]:
     """The columns that are known, of all rows. Raises UlnaInputError."""
     layout = Layout.of(source.entry, (f"{source.study}: key '{source.key}.", "'"), "[[readings]]")
-    header = read_header(path, WHAT, layout, known_columns(arm.n))
-    frame = read_table(header, is_numeric, check_columns(header, arm.n, arm.name, remarks))
+    coordinates = any(map(has_own_points, artefacts.values()))
+    header = read_header(path, WHAT, layout, known_columns(arm.n, coordinates))
+    frame = read_table(header, is_numeric, check_columns(header, arm.n, arm.name, remarks, coordinates))
     if not len(frame):
         raise UlnaInputError(
             f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
@@ -78,6 +82,9 @@ def _part(
             + "; expected two poses and their distance a row for kind 'length', else one. Correct the kind or the "
             "columns."
         )
+    feature: I64 | None = None
+    if has_own_points(artefact):
+        artefact, feature = own_points(frame, row, artefact, header, source, units, remarks)
     factors = _angle_factors(source, arm, units)
     q_rad = angles(frame, "q", factors)
     check_scale(q_rad, "q", factors, source.entry.angle or units.angle, header, row)
@@ -94,7 +101,7 @@ def _part(
         probe=each_row(
             codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row, remarks), len(row)
         ),
-        feature=_features(frame, row, artefact, header, source, remarks),
+        feature=_features(frame, row, artefact, header, source, remarks) if feature is None else feature,
         placement=_placements(frame, row, source, header, remarks),
         row=row,
         file=np.full(len(row), source.index, dtype=np.int64),

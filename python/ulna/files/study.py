@@ -16,6 +16,7 @@ from ulna.files.checks import check_bar_ends, check_limits, check_repeats
 from ulna.files.columns import ReadingsEntry, Source
 from ulna.files.merge import merge
 from ulna.files.models import Strict, fill
+from ulna.files.own_points import has_own_points
 from ulna.files.readings import read_readings
 from ulna.files.toml import check_format, read_toml
 from ulna.files.units import Units
@@ -120,13 +121,13 @@ def _readings(
         read, used = read_readings(source, arm, artefacts, file.units, remarks)
         files.append(used)
         parts += read
-    groups = merge(parts, artefacts, path)
+    groups = merge(parts, artefacts, files, path)
     for name in artefacts:
         if all(group.artefact.name != name for group in groups):
             remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
     for group in groups:
         check_bar_ends(group, files, path)
-        check_repeats(group, files, remarks)
+        check_repeats(group, files, remarks, own_points=has_own_points(artefacts[group.artefact.name]))
         check_limits(group, arm, files, remarks)
     return groups
 
