@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from pydantic import Field
 
 from ulna.errors import UlnaInputError, nearest
 from ulna.files.header import Header
 from ulna.files.layout import TableKeys
+from ulna.files.rows import Condition, SplitTable
 
 I64 = NDArray[np.int64]
 
@@ -46,9 +48,10 @@ def check_columns(
     arm: str,
     remarks: list[str],
     coordinates: bool = False,
+    asked: Collection[str] = (),
 ) -> list[str]:
-    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon.
-    Returns the known columns that are there."""
+    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon,
+    unless it is one of `asked`, of which the study speaks. Returns the known columns that are there."""
     for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
         _check_angles(header, letter, joints, arm)
     each = [f"temperature{k}" for k in range(1, joints + 1)]
@@ -61,14 +64,16 @@ def check_columns(
         )
     known = known_columns(joints, coordinates)
     words = [name for name in known if not name[-1].isdecimal()]
-    remark_strange(header, known, words, remarks)
+    remark_strange(header, known, words, remarks, asked)
     return [column for column in header.columns if column in known]
 
 
-def remark_strange(header: Header, known: Sequence[str], words: Sequence[str], remarks: list[str]) -> None:
+def remark_strange(
+    header: Header, known: Sequence[str], words: Sequence[str], remarks: list[str], asked: Collection[str] = ()
+) -> None:
     """Remark upon the columns that nobody uses. Raises UlnaInputError for one whose name is nearly one of `words`, if
     that is not there: a slip, most likely."""
-    strange = [column for column in header.columns if column not in known]
+    strange = [column for column in header.columns if column not in known and column not in asked]
     lacking = [name for name in words if name not in header.columns]
     for column in strange:
         slips = difflib.get_close_matches(column.lower(), lacking, n=1, cutoff=0.8)
@@ -135,6 +140,10 @@ class ReadingsEntry(TableKeys):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
+    """Filter: column = what it must hold. A text, a number, a list of these, or limits `{ above, below }`."""
+    split: SplitTable | None = None
+    """Which rows are fitted and which are kept to check the fit."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from ulna.files.columns import Source, check_columns, codes, each_row, is_numeri
 from ulna.files.header import Header
 from ulna.files.layout import Layout
 from ulna.files.own_points import has_own_points, own_points
+from ulna.files.rows import Rows, Selection
 from ulna.files.table import file_sha256, read_header, read_table
 from ulna.files.units import RAD_PER, Units
 from ulna.model import Arm
@@ -32,11 +33,11 @@ def read_readings(
     artefacts: dict[str, Artefact],
     units: Units,
     remarks: list[str],
+    which: Rows = "fit",
 ) -> tuple[list[Readings], InputFile]:
     """One file's readings, a part for each artefact in it. Raises UlnaInputError; remarks are added to."""
     path = source.study.parent / source.entry.file
-    frame, header = _table(path, source, arm, artefacts, remarks)
-    row = np.arange(1, len(frame) + 1)
+    frame, row, header, rows = _table(path, source, arm, artefacts, remarks, which)
     artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}", row)
     parts: list[Readings] = []
     check_ids(frame, row, header)
@@ -45,22 +46,35 @@ def read_readings(
         own = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
         part = frame if len(own) == len(frame) else frame[own]
         parts.append(_part(part, row[own], chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), len(frame))
+    return parts, InputFile(path, file_sha256(path), rows)
 
 
 def _table(
-    path: Path, source: Source, arm: Arm, artefacts: dict[str, Artefact], remarks: list[str]
-) -> tuple[pl.DataFrame, Header]:
-    """The columns that are known, of all rows. Raises UlnaInputError."""
-    layout = Layout.of(source.entry, (f"{source.study}: key '{source.key}.", "'"), "[[readings]]")
+    path: Path, source: Source, arm: Arm, artefacts: dict[str, Artefact], remarks: list[str], which: Rows
+) -> tuple[pl.DataFrame, I64, Header, int]:
+    """The columns that are known, of the rows that are used; (N,) those rows' numbers in the file; the number of all
+    its rows. Raises UlnaInputError."""
+    entry = source.entry
+    place = f"{source.study}: key '{source.key}"
+    layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
     coordinates = any(map(has_own_points, artefacts.values()))
     header = read_header(path, WHAT, layout, known_columns(arm.n, coordinates))
-    frame = read_table(header, is_numeric, check_columns(header, arm.n, arm.name, remarks, coordinates))
-    if not len(frame):
+    selection = Selection(entry.where or {}, entry.split, which, place)
+    asked = list(dict.fromkeys(selection.columns(header).values()))
+    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, asked)
+    if asked:
+        texts = header.cells(lambda _: False, asked)
+        chosen, rows = selection.of(texts, header, remarks), len(texts)
+        row = chosen + 1
+        frame = header.checked(header.cells(is_numeric, needed)[chosen], is_numeric, row)
+    else:
+        frame = read_table(header, is_numeric, needed)
+        row, rows = np.arange(1, len(frame) + 1), len(frame)
+    if not rows:
         raise UlnaInputError(
             f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
         )
-    return frame, header
+    return frame, row, header, rows
 
 
 def _part(
