@@ -114,7 +114,11 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
         )
     slips = [column for column in header.columns if column.lower() in missing]
     origin = next(filter(None, map(header.origin, [*extra, *(c for c in header.columns if c == letter)])), "")
-    has = f"{len(there)} columns {letter}…" if there else f"none such ({', '.join(header.columns)[:80]})"
+    has = (
+        f"{len(there)} column{'s' * (len(there) > 1)} {letter}…"
+        if there
+        else f"none such ({', '.join(header.columns)[:80]})"
+    )
     what = f"the column '{missing[0]}' is missing" if missing else f"the column '{extra[0]}' is one too many"
     raise UlnaInputError(
         f"{header.path}: {what}: the file has {has}, arm '{arm}' has {joints} joints; "

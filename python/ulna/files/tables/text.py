@@ -155,7 +155,12 @@ class TextTable(Header):
                 f"{at}: got '{cell}', a decimal comma; expected a number with a decimal point. {say or 'Export'} the "
                 "table again so."
             )
-        if numeric(column) and self.decimal == "," and number_of(cell.replace(".", ""), ",") is not None:
+        if (
+            numeric(column)
+            and self.decimal == ","
+            and "." in cell
+            and number_of(cell.replace(".", ""), ",") is not None
+        ):
             return (
                 f"{at}: got '{cell}', with a point; expected a number with a decimal comma "
                 f"({self.layout.key('decimal')}). Correct the key, or export the table again without points between "
