@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
+import scipy.io
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.cli_runs import assert_bad_input, run, write_lengths
@@ -284,3 +285,12 @@ def test_evaluate_without_a_split_judges_all(tmp_path: Path) -> None:
     assert_bad_input(run("evaluate", tmp_path / "start.toml", path, "--rows", "check"), "the key 'split'")
     study_in_memory = ulna.Study.load(path, "all")
     assert study_in_memory.rows is None
+
+
+def test_a_filter_by_an_array_of_another_length(tmp_path: Path) -> None:
+    keys = WRITERS["plain.mat"](TABLE, tmp_path / "t.mat")
+    contents = scipy.io.loadmat(tmp_path / "t.mat")
+    kept = {name: values for name, values in contents.items() if not name.startswith("_")}
+    scipy.io.savemat(tmp_path / "t.mat", kept | {"air": kept["air"][:5]})
+    small = study(tmp_path, f"{keys}where = {{ air = {{ above = 18 }} }}", "t.mat")
+    says(small.error(), "t.mat: air has 5 rows, the readings 8", "'readings.1'", "Correct the arrays")

@@ -66,7 +66,13 @@ def _table(
         texts = header.cells(lambda _: False, asked)
         chosen, rows = selection.of(texts, header, remarks), len(texts)
         row = chosen + 1
-        frame = header.checked(header.cells(is_numeric, needed)[chosen], is_numeric, row)
+        every = header.cells(is_numeric, needed)
+        if len(every) != rows:  # arrays in one file may be of several lengths
+            raise UlnaInputError(
+                f"{path}: {', '.join(map(header.own, asked))} {'have' if len(asked) > 1 else 'has'} {rows} rows, the "
+                f"readings {len(every)}; expected as many where rows are chosen by them ({place}'). Correct the arrays."
+            )
+        frame = header.checked(every[chosen], is_numeric, row)
     else:
         frame = read_table(header, is_numeric, needed)
         row, rows = np.arange(1, len(frame) + 1), len(frame)

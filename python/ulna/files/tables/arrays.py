@@ -24,8 +24,8 @@ from ulna.files.layout import Layout
 
 NUMBERS, TEXTS = "numbers", "texts"
 
-#: no file is smaller than its arrays by more: zlib makes of 1032 bytes one at best
-MOST_COMPRESSED = 1032 * 8
+#: an array has at most so many elements for each byte of its file: zlib makes of 1032 bytes one at best, others of more
+MOST_COMPRESSED = 8 * 1032
 #: a wider array is a picture or the like, but no table
 MOST_COLUMNS = 10_000
 

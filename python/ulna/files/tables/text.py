@@ -130,15 +130,18 @@ class TextTable(Header):
         numbers): the rows after the first `skip`, read as texts."""
         columns = [*numbers, *texts]
         before = 0
-        for frame in self._scan({}).collect_batches(chunk_size=rows, maintain_order=True):
-            rest = frame.slice(max(0, skip - before))
-            first = before + len(frame) - len(rest)
-            before += len(frame)
-            filled = rest.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines, which end the file
-            if len(filled):
-                converted = self._converted(filled.select(columns), lambda column: column in numbers)
-                checked = self.checked(converted, lambda column: column in numbers, before=first)
-                yield self.piece(checked, numbers, texts, first)
+        try:
+            for frame in self._scan({}).collect_batches(chunk_size=rows, maintain_order=True):
+                rest = frame.slice(max(0, skip - before))
+                first = before + len(frame) - len(rest)
+                before += len(frame)
+                filled = rest.filter(~pl.all_horizontal(pl.all().is_null()))  # blank lines, which end the file
+                if len(filled):
+                    converted = self._converted(filled.select(columns), lambda column: column in numbers)
+                    checked = self.checked(converted, lambda column: column in numbers, before=first)
+                    yield self.piece(checked, numbers, texts, first)
+        except polars.exceptions.PolarsError as error:
+            self._unreadable(error)
 
     # ------------------------------------------------------------ cell by cell
 
@@ -155,12 +158,8 @@ class TextTable(Header):
                 f"{at}: got '{cell}', a decimal comma; expected a number with a decimal point. {say or 'Export'} the "
                 "table again so."
             )
-        if (
-            numeric(column)
-            and self.decimal == ","
-            and "." in cell
-            and number_of(cell.replace(".", ""), ",") is not None
-        ):
+        pointed = "." in cell and number_of(cell.replace(".", ""), ",") is not None
+        if numeric(column) and self.decimal == "," and pointed:
             return (
                 f"{at}: got '{cell}', with a point; expected a number with a decimal comma "
                 f"({self.layout.key('decimal')}). Correct the key, or export the table again without points between "

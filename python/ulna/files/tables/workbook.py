@@ -196,26 +196,26 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
             f"{path}: row 1 of sheet '{sheet.name}' is blank; expected the names of the columns there. Remove the rows "
             "above them."
         )
+    for k, name in zip(used, names, strict=True):
+        if lines and not name:
+            line = next(line for line, row in enumerate(grid) if not _blank(row[k]))
+            raise UlnaInputError(
+                f"{path}: {address(sheet.name, line, k)}: got '{str(grid[line][k])[:40]}' in a column without a name; "
+                "expected a name in row 1 for every column. Name the column, clear the cell, or remove what stands "
+                "above the header."
+            )
     for line, row in enumerate(grid[lines:], start=lines):
-        if all(map(_blank, row)):
+        if _blank(row[used[0]]) and all(map(_blank, row)):
             raise UlnaInputError(
                 f"{path}: row {line + 1 - lines} (row {line + 1} of sheet '{sheet.name}') is blank; expected a "
                 "reading. Remove the row."
             )
-        strange = next((k for k, name in zip(used, names, strict=True) if not name and not _blank(row[k])), None)
-        if lines and strange is not None:
-            raise UlnaInputError(
-                f"{path}: {address(sheet.name, line, strange)}: got '{str(row[strange])[:40]}' in a column without a "
-                "name; expected a name in row 1 for every column. Name the column, clear the cell, or remove what "
-                "stands above the header."
-            )
-    named = [(k, name) for k, name in zip(used, names, strict=True) if name or not lines]
     return SheetTable(
         path,
-        [name for _, name in named] if lines else [f"c{k + 1}" for k in used],
+        names if lines else [f"c{k + 1}" for k in used],
         sheet=sheet.name,
         lines=lines,
         grid=grid[lines:],
-        places=[k for k, _ in named],
+        places=used,
         merged=list(sheet.merged_cell_ranges or ()),
     )
