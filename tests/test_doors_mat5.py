@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from pathlib import Path
 from typing import Any
@@ -152,3 +153,26 @@ def test_what_is_not_built_as_the_format_says(tmp_path: Path, case: str) -> None
     (tmp_path / "a.mat").write_bytes(file_of("<", content))
     with pytest.raises(DamagedError, match=expected):
         read(tmp_path / "a.mat", "q")
+
+
+WRITTEN_BY_OTHERS = sorted((Path(scipy.io.__file__).parent / "matlab" / "tests" / "data").glob("*.mat"))
+
+
+@pytest.mark.skipif(not WRITTEN_BY_OTHERS, reason="this SciPy comes without its tests' files")
+def test_files_that_matlab_and_octave_wrote() -> None:
+    """Of several versions, compressed and not, of both orders of bytes: they come with SciPy."""
+    compared = 0
+    for path in WRITTEN_BY_OTHERS:
+        if path.read_bytes()[124:128] not in (b"\x00\x01IM", b"\x01\x00MI") or re.match(
+            "bad|broken|malf|corr|nasty|test_empty_struct", path.name
+        ):
+            continue  # of version 4 or 7.3, or meant to be damaged
+        theirs = scipy.io.loadmat(path)
+        for entry in entries(path):
+            found = value(path, entry)
+            assert (entry.name in theirs) or entry.kind == "a MATLAB function", path.name
+            nothing = entry.name in theirs and "None" in repr(theirs[entry.name])  # a struct without fields
+            if entry.kind in ("numbers", "char", "cell", "struct") and "Strange" not in repr(found) and not nothing:
+                assert plain(found) == plain_scipy(theirs[entry.name]), f"{path.name}: {entry.name}"
+                compared += 1
+    assert compared > 50
