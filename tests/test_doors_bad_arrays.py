@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -171,3 +173,18 @@ def test_matlabs_own_kinds_in_the_new_format(tmp_path: Path) -> None:
     _, warned = small.load()
     assert [re.sub(".*: not", "not", warning) for warning in warned] == ["not used: the columns T, note."]
     says(told(tmp_path, "n.mat", 'columns = { id = "T" }'), "column 'T' (id): is a MATLAB table; expected a column")
+
+
+def test_a_file_that_is_still_being_written(tmp_path: Path) -> None:
+    code = (
+        "import sys, h5py\nf = h5py.File(sys.argv[1], 'w')\nf['q'] = 1\nf.flush()\nprint('ready', flush=True)\ninput()"
+    )
+    writer = subprocess.Popen(
+        [sys.executable, "-c", code, str(tmp_path / "h.h5")], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    try:
+        assert writer.stdout is not None
+        assert writer.stdout.readline() == "ready\n"
+        says(told(tmp_path, "h.h5"), "h.h5: another program has this file open to write", "Close it there")
+    finally:
+        writer.communicate("\n", timeout=30)

@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.errors import UlnaInputError
 from ulna.files.layout import Layout
 from ulna.files.tables.arrays import (
     NUMBERS,
@@ -44,6 +45,10 @@ def open_hdf5(path: Path, what: str, layout: Layout) -> Hdf5Table:
                 raise no_such_part(path, layout, _paths(file))
             variables, inner = _variables(path, place)
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
+        if "unable to lock" in str(error) or "already open" in str(error):
+            raise UlnaInputError(
+                f"{path}: another program has this file open to write; expected one that is finished. Close it there."
+            ) from None
         raise unreadable(path, "this looks like an HDF5 file, but", error, what) from None
     columns = columns_of(variables, path)
     if not columns:
