@@ -11,8 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from ulna.errors import UlnaInputError
-from ulna.files.stream import count_rows, stream
-from ulna.files.table import read_header
+from ulna.files.table import count_rows, read_header, stream
 
 Q = ["q1", "q2", "q3"]
 

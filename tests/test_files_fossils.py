@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ulna import Arm, Result, Study
+from ulna import Arm, InputWarning, Result, Study
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.study import Readings
 
@@ -100,6 +101,23 @@ def test_lengths_1(study: Study) -> None:
     assert distance.p_rad is not None
     assert distance.p_rad[1].tolist() == [-1.1, 1.2, -1.3, 1.4]
     assert distance.length_mm == pytest.approx(np.full(2, 17.4477 * 25.4))
+
+
+def test_study_1_of_other_peoples_tables() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        fitted, kept = (Study.load(FOSSILS / "study-1-tables.toml", rows) for rows in ("fit", "check"))  # type: ignore[arg-type]
+    tracker, plate = fitted.readings
+    assert tracker.row.tolist() == [1, 6]  # 2: lost, 4: too warm; 3 and 5: to check
+    assert tracker.q_rad == pytest.approx(np.radians([[10.5, -10.25, 3.125, 0], [15.5, -15.25, 8.125, 5]]))
+    assert list(tracker.artefact.features) == ["p1", "p6"]
+    assert tracker.artefact.features["p6"] == pytest.approx((16.5 * 25.4, -7.25 * 25.4, 11.75 * 25.4))
+    assert (tracker.artefact.frame, tracker.probe.tolist()) == ("arm", [0, 0])
+    assert plate.q_rad == pytest.approx(np.radians([[10, -10, 3, 0], [20.5, 5.25, 4, 90]]))
+    assert (plate.feature.tolist(), plate.probe.tolist()) == ([0, 1], [1, 1])
+    assert plate.artefact.features["s3"] == pytest.approx((12.7, 4 * 25.4, 0.125 * 25.4))
+    (checked,) = kept.readings
+    assert checked.row.tolist() == [3, 5]
 
 
 def test_result_1() -> None:

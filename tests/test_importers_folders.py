@@ -132,7 +132,9 @@ def test_ipa_ur10_spread_and_in_several_standings(tmp_path: Path) -> None:
 def test_what_a_bad_tracker_table_is_told(tmp_path: Path) -> None:
     path = tmp_path / "measurements.csv"
     path.write_text(_tracker_table(4).replace("0,125", "0,1x5"))
-    with pytest.raises(UlnaInputError, match=r"row 2 \(line 3 of the file\), column 'shoulder_pan_joint': got '0,1x5'"):
+    with pytest.raises(
+        UlnaInputError, match=r"row 2 \(line 3 of the file\), column 'shoulder_pan_joint' \(q1\): got '0,1x5'"
+    ):
         import_ipa_ur10(path, tmp_path / "out")
     path.write_text(_tracker_table(4).replace("measurement_y", "y"))
     with pytest.raises(UlnaInputError, match="column 'measurement_y' is missing"):

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from docs_running import reader_folder, ulna
 
@@ -68,6 +69,30 @@ def keep_results(folder: Path) -> None:
     (folder / "out" / "result.json").write_text("{}", encoding="utf-8")
 
 
+def mapped(keys: str) -> Break:
+    """Say more of the readings' file."""
+    return swap(STUDY, 'file = "bars.csv"\n', f'file = "bars.csv"\n{keys}\n')
+
+
+def workbook(edit: Callable[[Any], object], keys: str = "") -> Break:
+    """The readings as a workbook, edited."""
+
+    def write(folder: Path) -> None:
+        import openpyxl
+
+        lines = [line.split(",") for line in (folder / READINGS).read_text(encoding="utf-8").splitlines()]
+        book = openpyxl.Workbook()
+        book.active.title = "Sheet1"
+        book.active.append(lines[0])
+        for line in lines[1:]:
+            book.active.append([*line[:2], *map(float, line[2:])])
+        edit(book)
+        book.save((folder / READINGS).with_suffix(".xlsx"))
+        swap(STUDY, 'file = "bars.csv"\n', f'file = "bars.xlsx"\n{keys}')(folder)
+
+    return write
+
+
 #: section → what is wrong → how to break the example
 CASES: dict[str, dict[str, Break]] = {
     "Files": {
@@ -85,6 +110,15 @@ CASES: dict[str, dict[str, Break]] = {
         "degrees read as radians": degrees,
         "decimal commas": decimal_commas,
         "a blank line in between": cell(17, 8, "0.1\n"),
+    },
+    "Tables of others": {
+        "a column that is not there": mapped('columns = { q1 = "sholder" }'),
+        "a key that the format has no use for": mapped('sheet = "Sheet1"'),
+        "several sheets": workbook(lambda book: book.create_sheet("Notes")),
+        "a cell of a workbook": workbook(lambda book: book.active.__setitem__("E18", "n/a")),
+        "a formula that nobody computed": workbook(lambda book: book.active.__setitem__("E18", "=E17*2")),
+        "a filter that leaves nothing": mapped('where = { placement = "place 1000" }'),
+        "a split that leaves nothing to fit": mapped('split = { column = "feature", fit = "C", check = "B" }'),
     },
     "Names": {
         "an unknown probe": swap(STUDY, 'probe = "bent"', 'probe = "bend"'),

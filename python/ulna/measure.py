@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from ulna.files.layout import AS_EXPECTED, Layout
 from ulna.files.output import new_file, refuse_inputs
 from ulna.measuring import MeasureJob
 from ulna.model import Arm
@@ -57,17 +58,29 @@ def measure(
     angle: Angle = "rad",
     units: Literal["mm", "m", "in"] = "mm",
     encoder_u_rad: F64 | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
+    header: bool = True,
+    sheet: str | None = None,
+    dataset: str | None = None,
+    columns: Mapping[str, str] | None = None,
     force: bool = False,
     progress: Progress | None = None,
 ) -> Measurement:
-    """Tip positions of encoder readings (columns ``q1 … qn``; optional ``id``, ``probe``), CSV or Parquet.
+    """Tip positions of encoder readings (columns ``q1 … qn``; optional ``id``, ``probe``): a CSV, Parquet, .xlsx, .mat
+    or HDF5 file.
 
     `arm`: an arm, an arm file or a result. With a result come standard uncertainties: of the calibration, and of the
     encoders where the study stated their noise (or `encoder_u_rad`, (n,), does).
+    `separator`, `decimal`, `header`, `sheet`, `dataset`, `columns`: how the file is written, as in a study's
+    ``[[readings]]``.
     `out`: a CSV or Parquet file (by its ending), written whole or not at all; None: the table is returned in memory.
     Raises UlnaInputError naming the first bad cell; KeyboardInterrupt leaves nothing behind.
     """
-    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad)
+    layout = Layout.of_options(
+        columns, separator=separator, decimal=decimal, header=header, sheet=sheet, dataset=dataset
+    )
+    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout)
     table = path = None
     if out is None:
         table = pl.concat(list(job.frames(progress)))
@@ -89,12 +102,13 @@ def measure_to_stream(
     json_lines: bool = False,
     angle: Angle = "rad",
     units: Literal["mm", "m", "in"] = "mm",
+    layout: Layout = AS_EXPECTED,
 ) -> Measurement:
     """The same, written as CSV (or one JSON object a line) to an open file, such as stdout.
 
     What went out cannot be taken back, so all readings are checked before the first point is written.
     """
-    job = MeasureJob(arm, Path(readings), probe, angle, units)
+    job = MeasureJob(arm, Path(readings), probe, angle, units, layout=layout)
     job.check()
     for number, frame in enumerate(job.frames()):
         # as text, so that a reader who has gone away is noticed as Python notices it

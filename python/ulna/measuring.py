@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from ulna.errors import InputWarning, UlnaInputError, nearest
 from ulna.files.arm import WHAT, arm_of_result, load_arm
-from ulna.files.cells import Header
 from ulna.files.checks import MOST_RAD
-from ulna.files.columns import check_columns
+from ulna.files.columns import check_columns, known_columns
 from ulna.files.covariance import noise_of_result
+from ulna.files.header import Header, Piece
+from ulna.files.layout import AS_EXPECTED, Layout
 from ulna.files.readings import WHAT as WHAT_READINGS
-from ulna.files.stream import Piece, count_rows, stream
-from ulna.files.table import read_header
+from ulna.files.table import count_rows, read_header, stream
 from ulna.files.toml import check_format, read_json
 from ulna.files.units import MM_PER
 from ulna.model import Arm
@@ -42,6 +42,7 @@ class MeasureJob:
         angle: str = "rad",
         units: str = "mm",
         encoder_u_rad: F64 | None = None,
+        layout: Layout = AS_EXPECTED,
     ) -> None:
         """Raises UlnaInputError for whatever is wrong before the first row."""
         if isinstance(arm, Arm):
@@ -52,7 +53,7 @@ class MeasureJob:
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
-        self.header: Header = read_header(readings, WHAT_READINGS)
+        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
         self._angle = angle
         self._rad_per = self._angle_factors(angle)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
@@ -127,7 +128,7 @@ class MeasureJob:
             row, k = (int(at[0]) for at in np.nonzero(np.abs(q_rad) > MOST_RAD))
             asked = {"rad": "degrees or counts", "deg": "counts", "counts": "radians or degrees"}[self._angle]
             raise UlnaInputError(
-                f"{self.header.path}: {self.header.where(piece.before + row + 1)}, column '{self._q[k]}': got "
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, self._q[k])}: got "
                 f"{q[row, k]:g} {self._angle}, more than two turns; expected angles within ±4π rad (720°). Are these "
                 f"{asked}? Say which with --angle."
             )
@@ -150,7 +151,7 @@ class MeasureJob:
         if (index < 0).any():
             row = int(np.argmax(index < 0))
             raise UlnaInputError(
-                f"{self.header.path}: {self.header.where(piece.before + row + 1)}, column 'probe': arm "
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, 'probe')}: arm "
                 f"'{self.arm.name}' has no probe '{column[row]}'.{nearest(str(column[row]), names)}"
             )
         return np.ascontiguousarray(index)

@@ -11,7 +11,8 @@ from ulna.study import Study
 
 
 def provenance(study: Study, when: datetime, seconds: float | None = None) -> dict[str, Any]:
-    """Program version, input files with SHA-256, options, noise, seed, time; JSON types only."""
+    """Program version, input files with SHA-256, which rows where there is a split, options, noise, seed, time; JSON
+    types only."""
     options = dataclasses.asdict(study.fit)
     noise: dict[str, Any] | None = None
     if study.noise is not None:
@@ -24,6 +25,7 @@ def provenance(study: Study, when: datetime, seconds: float | None = None) -> di
         "program": "ulna",
         "version": ulna.__version__,
         "study": None if study.path is None else str(study.path),
+        **({} if study.rows is None else {"rows": study.rows}),
         "files": [{"path": str(file.path), "sha256": file.sha256, "rows": file.rows} for file in study.files],
         "options": options,
         "seed": options["seed"],

@@ -152,13 +152,18 @@ class Study:
     files: list[InputFile] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     """Remarks made while reading; also issued as InputWarning."""
+    rows: Literal["fit", "check", "all"] | None = None
+    """Which rows these are, where the study keeps some to check the fit; None where it does not."""
 
     @classmethod
-    def load(cls, path: str | Path) -> Study:
-        """Read a study file (`ulna-study/1`) and all that it names. Raises UlnaInputError; warns with InputWarning."""
+    def load(cls, path: str | Path, rows: Literal["fit", "check", "all"] = "fit") -> Study:
+        """Read a study file (`ulna-study/1`) and all that it names. Raises UlnaInputError; warns with InputWarning.
+
+        rows: where the study has a split, the rows to fit, the rows kept to check the fit, or both.
+        """
         from ulna.files.study import load_study  # the door to the files stands here for the user
 
-        return load_study(Path(path))
+        return load_study(Path(path), rows)
 
     @property
     def label(self) -> str:

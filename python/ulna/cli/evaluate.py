@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Annotated, Any
+
+import typer
+
 from ulna.cli.options import ArmFile, Force, Json, OutFolder, Study
 from ulna.cli.running import guard
 
 
 @guard
-def evaluate(arm: ArmFile, study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+def evaluate(
+    arm: ArmFile,
+    study: Study,
+    rows: Annotated[
+        str | None,
+        typer.Option(
+            "--rows",
+            metavar="fit|check|all",
+            help="Of a study with a split; default: check. Else all.",
+            show_default=False,
+        ),
+    ] = None,
+    out: OutFolder = None,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
     """Judge an arm, unchanged, on a study's readings: seat scatter, length error, coordinate error.
 
     The figures come from the readings alone; where artefacts stand is fitted, the arm is not. The study's own arm only
-    tells its probes' names. With -o it writes evaluation.json and residuals.csv.
+    tells its probes' names. Where the study keeps rows to check a fit (key split), those are judged. With -o it writes
+    evaluation.json and residuals.csv.
 
     Example: [bold]ulna evaluate out/result.json fresh.toml[/bold]
     """
@@ -19,12 +39,14 @@ def evaluate(arm: ArmFile, study: Study, out: OutFolder = None, force: Force = F
     from ulna.cli import output
     from ulna.evaluate import FILES
     from ulna.files.output import check_output, refuse_inputs
+    from ulna.files.study import rows_to_judge
     from ulna.report.evaluation import evaluation_report
 
     if out is not None:
         check_output(out, FILES, force)
     judged = ulna.Arm.load(arm)
-    loaded = ulna.Study.load(study)
+    wanted: Any = rows or rows_to_judge(study)
+    loaded = ulna.Study.load(study, wanted)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *(file.path for file in loaded.files)])
     with output.progress_bar() as progress:

@@ -17,7 +17,7 @@ def measure(
     arm: ArmFile,
     readings: Annotated[
         Path,
-        typer.Argument(metavar="READINGS", help="CSV or Parquet with columns q1 … qn.", show_default=False),
+        typer.Argument(metavar="READINGS", help="CSV, Parquet, .xlsx, .mat or HDF5.", show_default=False),
     ],
     probe: Annotated[
         str | None, typer.Option("--probe", metavar="NAME", help="Which probe is on.", show_default=False)
@@ -28,6 +28,23 @@ def measure(
     ] = None,
     angle: Annotated[str, typer.Option("--angle", help="Of the readings: rad, deg or counts.")] = "rad",
     units: Annotated[str, typer.Option("--units", help="Of the points: mm, m or in.")] = "mm",
+    separator: Annotated[
+        str | None, typer.Option("--separator", metavar="SIGN", help='CSV: between columns; or "tab".')
+    ] = None,
+    decimal: Annotated[str | None, typer.Option("--decimal", metavar="SIGN", help='CSV: "," or ".".')] = None,
+    no_header: Annotated[
+        bool, typer.Option("--no-header", help="CSV, Excel: columns are called c1, c2, … in --column.")
+    ] = False,
+    sheet: Annotated[str | None, typer.Option("--sheet", metavar="NAME", help="Excel: which sheet.")] = None,
+    dataset: Annotated[
+        str | None, typer.Option("--dataset", metavar="PATH", help="HDF5: group or data set; MAT: struct.")
+    ] = None,
+    column: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--column", metavar="OURS=THEIRS", help="Ulna's name = the file's; repeat it.", show_default=False
+        ),
+    ] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
@@ -36,18 +53,23 @@ def measure(
     Columns q1 … qn; id and probe are kept where they are. With a result.json as ARM come the standard uncertainties
     u_x, u_y, u_z, from the calibration and, where its study stated it, the encoders' noise; they are left empty where
     a point depends on what the calibration could not determine, and stderr says why. --json prints one object per
-    point, or with -o an account of what was written.
+    point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole.
 
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
     """
     from ulna.cli import output
+    from ulna.files.layout import Layout
     from ulna.measure import measure as measure_to_file
     from ulna.measure import measure_to_stream
 
     choices: Any = {"angle": angle, "units": units}
+    table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}
+    layout = Layout.of_options(column, dataset=dataset, **table)
     if out is None:
+        choices["layout"] = layout
         found = measure_to_stream(arm, readings, probe, sys.stdout.buffer, json_lines=as_json, **choices)
     else:
+        choices |= {**table, "dataset": dataset, "columns": layout.columns}
         with output.progress_bar() as progress:
             found = measure_to_file(arm, readings, probe, out, force=force, progress=progress, **choices)
         if as_json:

@@ -11,8 +11,10 @@ from pydantic import Discriminator, Field, Tag
 
 from ulna.errors import UlnaInputError, nearest
 from ulna.files.arm import check_name
+from ulna.files.features import COLUMNS, open_features
+from ulna.files.layout import TableKeys
 from ulna.files.models import Strict
-from ulna.files.table import file_sha256, read_header, read_table
+from ulna.files.table import file_sha256, read_table
 from ulna.files.units import Units
 from ulna.study import Artefact, InputFile
 
@@ -63,8 +65,11 @@ class PointsTable(Strict):
     """Features with calibrated coordinates: ball bar, ball plate, points from a laser tracker."""
 
     kind: Literal["points"]
-    features: Features
-    """Coordinates by name, or the path of a CSV or Parquet file with columns feature, x, y, z and perhaps u."""
+    features: Features | None = None
+    """Coordinates by name, or the path of a table with columns feature, x, y, z and perhaps u; left out where every
+    reading brings the coordinates of a point of its own, in columns x, y, z and perhaps u."""
+    features_format: TableKeys | None = None
+    """How the table of features is written, where it is not a CSV file with commas."""
     frame: Literal["free", "arm"] = "free"
     """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
     u: Uncertainty | None = None
@@ -118,6 +123,13 @@ def make_artefact(
     if isinstance(table, LengthTable):
         distance_mm = None if table.length is None else table.length * units.mm
         return Artefact(name, "length", {}, distance_mm, table.u * units.mm), None
+    if table.features_format is not None and not isinstance(table.features, str):
+        raise UlnaInputError(
+            f"{path}: key 'artefact.{name}.features_format': says how a file is written, but the key 'features' names "
+            "none. Remove it, or name the file of the features."
+        )
+    if table.features is None:  # own_points.py makes them of the readings
+        return Artefact(name, "points", {}, None, (table.u or 0.0) * units.mm, table.frame), None
     if isinstance(table.features, str):
         return _from_file(name, table, path.parent / table.features, units, path, warnings)
     for feature in table.features:
@@ -129,29 +141,21 @@ def make_artefact(
 def _from_file(
     name: str, table: PointsTable, file: Path, units: Units, path: Path, warnings: list[str]
 ) -> tuple[Artefact, InputFile]:
-    header = read_header(file, "a features file (CSV with columns feature,x,y,z or feature,x,y,z,u)")
-    known = ["feature", "x", "y", "z", "u"]
-    for column in header.columns:
-        if column not in known:
-            raise UlnaInputError(f"{file}: unknown column '{column}'.{nearest(column, known)} Remove or correct it.")
-    for column in known[:4]:
-        if column not in header.columns:
-            raise UlnaInputError(
-                f"{file}: the column '{column}' is missing; the file has {', '.join(header.columns)}, expected "
-                "feature,x,y,z and perhaps u. Add it."
-            )
+    header = open_features(file, table.features_format, f"artefact.{name}", path, warnings)
     if "u" in header.columns and table.u is not None:
         raise UlnaInputError(
             f"{path}: key 'artefact.{name}.u': got {table.u:g}, but {file} has a column 'u' as well. Remove one of "
             "them."
         )
-    frame = read_table(header, lambda column: column != "feature")
+    frame = read_table(
+        header, lambda column: column != "feature", [column for column in COLUMNS if column in header.columns]
+    )
     names = frame["feature"].to_list()
     rows: dict[str, int] = {}
     for row, feature in enumerate(names, start=1):
         if feature in rows:
             raise UlnaInputError(
-                f"{file}: {header.where(row)}, column 'feature': '{feature}' stands in row {rows[feature]} already; "
+                f"{file}: {header.at(row, 'feature')}: '{feature}' stands in row {rows[feature]} already; "
                 "expected each feature once. Rename or remove one."
             )
         rows[feature] = row

@@ -16,7 +16,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
+from ulna.files.header import Header
 from ulna.model import Arm
 from ulna.study import InputFile, Readings
 
@@ -42,23 +42,24 @@ def check_scale(q_rad: F64, letter: str, factors: F64, unit: str, header: Header
             "Correct counts_per_turn or the column." if unit == "counts" else "State the unit with the key 'angle'."
         )
         raise UlnaInputError(
-            f"{header.path}: {header.where(int(row[first]))}, column '{letter}{k + 1}': got "
+            f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got "
             f"{column[first] / factor:g} {unit}, more than two turns; expected angles within ±4π rad (720°). Are "
             f"these {asked}? {remedy}"
         )
 
 
-def check_ids(frame: pl.DataFrame, header: Header) -> None:
+def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:
     """One id, one reading. Raises UlnaInputError where two different rows have the same id."""
     if "id" not in frame.columns or not frame["id"].is_duplicated().any():
         return
-    at = frame.with_row_index("row").unique(subset=frame.columns, keep="first", maintain_order=True)
+    numbered = frame.with_columns(pl.Series("row", row))
+    at = numbered.unique(subset=frame.columns, keep="first", maintain_order=True)
     again = at.filter(pl.col("id").is_duplicated())
     if len(again):
         value = again["id"][0]
-        first, second = (again.filter(pl.col("id") == value)["row"][:2] + 1).to_list()
+        first, second = again.filter(pl.col("id") == value)["row"][:2].to_list()
         raise UlnaInputError(
-            f"{header.path}: {header.where(second)}, column 'id': '{value}' stands in row {first} already, with other "
+            f"{header.path}: {header.at(second, 'id')}: '{value}' stands in row {first} already, with other "
             "values; expected one reading per id. Correct or remove one of them."
         )
 
@@ -107,24 +108,29 @@ def check_bar_ends(group: Readings, files: list[InputFile], study: Path) -> None
         )
 
 
-def check_repeats(group: Readings, files: list[InputFile], remarks: list[str]) -> None:
-    """Remark upon copies of a reading; raise UlnaInputError for readings that contradict each other."""
+def check_repeats(group: Readings, files: list[InputFile], remarks: list[str], own_points: bool = False) -> None:
+    """Remark upon copies of a reading; raise UlnaInputError for readings that contradict each other.
+
+    own_points: every reading touched a point of its own, measured along with it: that two differ is no contradiction.
+    """
     candidates = _same_angles(group)
     first_of: dict[bytes, list[int]] = defaultdict(list)
     for k in candidates.tolist():
         key = group.q_rad[k].tobytes() + (b"" if group.p_rad is None else group.p_rad[k].tobytes())
         first_of[key + group.probe[k].tobytes()].append(k)
     copies: list[tuple[int, int]] = []
+    points = list(group.artefact.features.values())
     for rows in first_of.values():
         seen: dict[object, int] = {}
         for k in rows:
-            where = group.placement[k] if group.artefact.frame == "free" else ""
+            standing = group.placement[k] if group.artefact.frame == "free" else ""
+            where = (standing, points[group.feature[k]] if own_points else None)
             first = seen.setdefault(where, k)
             if first == k:
                 continue
             if group.length_mm is not None and group.length_mm[k] != group.length_mm[first]:
                 raise _contradiction(group, files, first, k, "length", "the same two poses")
-            if group.feature[k] != group.feature[first]:
+            if group.feature[k] != group.feature[first] and not own_points:
                 raise _contradiction(group, files, first, k, "feature", "the same encoder angles")
             copies.append((k, first))
     copies.sort()

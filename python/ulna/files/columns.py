@@ -4,51 +4,100 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
+from pydantic import Field
 
 from ulna.errors import UlnaInputError, nearest
-from ulna.files.cells import Header
-from ulna.files.models import Strict
+from ulna.files.header import Header
+from ulna.files.layout import TableKeys
+from ulna.files.rows import Condition, SplitTable
 
 I64 = NDArray[np.int64]
+
+#: unused columns named in a remark
+MOST_SHOWN = 24
 
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
 
+COORDINATES = ("x", "y", "z", "u")
+
+
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*", column) is not None
+    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*|[xyzu]", column) is not None
 
 
-def check_columns(header: Header, joints: int, arm: str, remarks: list[str]) -> None:
-    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon."""
+def known_columns(joints: int, coordinates: bool) -> list[str]:
+    """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
+    their own."""
+    several = [f"{name}{k}" for name in ("q", "p", "temperature") for k in range(1, joints + 1)]
+    return [*NAMES, "length", "temperature", *several, *(COORDINATES if coordinates else ())]
+
+
+def check_columns(
+    header: Header,
+    joints: int,
+    arm: str,
+    remarks: list[str],
+    coordinates: bool = False,
+    asked: Collection[str] = (),
+) -> list[str]:
+    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon,
+    unless it is one of `asked`, of which the study speaks. Returns the known columns that are there."""
     for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
         _check_angles(header, letter, joints, arm)
     each = [f"temperature{k}" for k in range(1, joints + 1)]
     there = [column for column in header.columns if re.fullmatch(r"temperature[0-9]+", column)]
     if there and (sorted(there) != sorted(each) or "temperature" in header.columns):
         raise UlnaInputError(
-            f"{header.path}: line 1: the temperature columns are {', '.join(there)}; expected one column temperature, "
-            f"or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the header."
+            f"{header.path}: {header.head}: the temperature columns are {', '.join(there)}; expected one column "
+            f"temperature, or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the "
+            "header."
         )
-    known = [*NAMES, "length", "temperature"]
-    taken = {*known, *each, *(f"{letter}{k}" for letter in "qp" for k in range(1, joints + 1))}
-    strange = [column for column in header.columns if column not in taken]
+    known = known_columns(joints, coordinates)
+    words = [name for name in known if not name[-1].isdecimal()]
+    remark_strange(header, known, words, remarks, asked)
+    return [column for column in header.columns if column in known]
+
+
+def remark_strange(
+    header: Header, known: Sequence[str], words: Sequence[str], remarks: list[str], asked: Collection[str] = ()
+) -> None:
+    """Remark upon the columns that nobody uses. Raises UlnaInputError for one whose name is nearly one of `words`, if
+    that is not there: a slip, most likely."""
+    strange = [column for column in header.columns if column not in known and column not in asked]
+    lacking = [name for name in words if name not in header.columns]
     for column in strange:
-        slips = difflib.get_close_matches(column.lower(), known, n=1, cutoff=0.8)
+        slips = difflib.get_close_matches(column.lower(), lacking, n=1, cutoff=0.8)
         if slips:
             raise UlnaInputError(
-                f"{header.path}: unknown column '{column}'. Did you mean '{slips[0]}'? Rename it, or give it a name "
-                "that is not so near."
+                f"{header.path}: unknown column '{column}'. Did you mean '{slips[0]}'? Rename or map it; a column that "
+                "is not meant needs a name that is not so near."
             )
     if strange:
-        remarks.append(f"{header.path}: not used: the column{'s' * (len(strange) > 1)} {', '.join(strange)}.")
+        runs = _runs(strange)
+        shown = ", ".join(runs[:MOST_SHOWN]) + (f", … ({len(strange)} in all)" if len(runs) > MOST_SHOWN else "")
+        remarks.append(f"{header.path}: not used: the column{'s' * (len(strange) > 1)} {shown}.")
+
+
+def _runs(names: Sequence[str]) -> list[str]:
+    """Names in order, those that are numbered one after the other told shortly: `force1 … force6`."""
+    found: list[list[str]] = []
+    for name in names:
+        stem, number = re.fullmatch(r"(.*?)([0-9]*)", name, re.DOTALL).groups()  # type: ignore[union-attr]
+        if found and number and found[-1][-1] == f"{stem}{int(number) - 1}":
+            found[-1].append(name)
+        else:
+            found.append([name])
+    return [run[0] if len(run) == 1 else f"{run[0]} … {run[-1]}" if len(run) > 2 else ", ".join(run) for run in found]
 
 
 def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
@@ -60,19 +109,31 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
         return
     if header.columns[0].startswith("#"):
         raise UlnaInputError(
-            f"{header.path}: line 1 begins with '#' ({', '.join(header.columns)[:60]}); expected the header with "
-            f"{expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
+            f"{header.path}: {header.head} begins with '#' ({', '.join(header.columns)[:60]}); expected the header "
+            f"with {expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
         )
     slips = [column for column in header.columns if column.lower() in missing]
+    origin = next(filter(None, map(header.origin, [*extra, *(c for c in header.columns if c == letter)])), "")
+    has = (
+        f"{len(there)} column{'s' * (len(there) > 1)} {letter}…"
+        if there
+        else f"none such ({', '.join(header.columns)[:80]})"
+    )
     what = f"the column '{missing[0]}' is missing" if missing else f"the column '{extra[0]}' is one too many"
     raise UlnaInputError(
-        f"{header.path}: {what}: the file has {len(there)} columns {letter}…, arm '{arm}' has {joints} joints; "
+        f"{header.path}: {what}: the file has {has}, arm '{arm}' has {joints} joints; "
         f"expected {expected[0]} … {expected[-1]}. "
-        + (f"Rename '{slips[0]}'." if slips else "Name the right arm in the study, or correct the header.")
+        + (
+            f"Rename '{slips[0]}', or map it with the key 'columns'."
+            if slips
+            else f"{origin}: expected numbers, one row for each reading. Write it so, or name the right arm."
+            if origin
+            else "Map the file's columns with the key 'columns', name the right arm, or correct the header."
+        )
     )
 
 
-class ReadingsEntry(Strict):
+class ReadingsEntry(TableKeys):
     """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
 
     file: str
@@ -83,6 +144,10 @@ class ReadingsEntry(Strict):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
+    """Filter: column = what it must hold. A text, a number, a list of these, or limits `{ above, below }`."""
+    split: SplitTable | None = None
+    """Which rows are fitted and which are kept to check the fit."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +170,7 @@ def codes(
     column: Literal["artefact", "probe", "feature"],
     known: list[str],
     owner: str,
-    row: I64 | None = None,
+    row: I64,
     remarks: list[str] | None = None,
 ) -> I64 | int:
     """Index into `known` of each row, or one for all rows. Raises UlnaInputError for a name that is not known."""
@@ -117,9 +182,9 @@ def codes(
         strange = ~names.is_in(known)
         if strange.any():
             first = int(strange.arg_true()[0])
-            at = header.where(first + 1 if row is None else int(row[first]))
+            at = header.at(int(row[first]), column)
             raise UlnaInputError(
-                f"{header.path}: {at}, column '{column}': got '{names[first]}', which {owner} does not have."
+                f"{header.path}: {at}: got '{names[first]}', which {owner} does not have."
                 f"{nearest(names[first], known)} Correct the cell, or add the {column}."
             )
         return names.replace_strict(known, list(range(len(known))), return_dtype=pl.Int64).to_numpy()

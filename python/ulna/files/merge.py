@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ulna.errors import UlnaInputError
-from ulna.study import Artefact, Readings
+from ulna.files.own_points import has_own_points, joined_points
+from ulna.study import Artefact, InputFile, Readings
 
 
-def merge(parts: list[Readings], artefacts: dict[str, Artefact], study: Path) -> list[Readings]:
+def merge(parts: list[Readings], artefacts: dict[str, Artefact], files: list[InputFile], study: Path) -> list[Readings]:
     """The parts of each artefact as one, in the order in which the study declares artefacts. Raises UlnaInputError."""
     merged: list[Readings] = []
     for artefact in artefacts.values():
-        own = [part for part in parts if part.artefact is artefact]
+        own = [part for part in parts if part.artefact.name == artefact.name]
         if not own:
             continue
         _name_placements(own, artefact, study)
-        merged.append(own[0] if len(own) == 1 else _joined(artefact, own))
+        if len(own) > 1 and has_own_points(artefact):
+            own = _with_one_artefact(own, files)
+        merged.append(own[0] if len(own) == 1 else _joined(own[0].artefact, own))
     return merged
 
 
@@ -34,6 +38,12 @@ def _name_placements(own: list[Readings], artefact: Artefact, study: Path) -> No
         )
     for part in unnamed:
         part.placement[:] = "1"
+
+
+def _with_one_artefact(own: list[Readings], files: list[InputFile]) -> list[Readings]:
+    """Each part brought points of its own: all of them are the features of one artefact."""
+    artefact, features = joined_points(own, [file.path for file in files])
+    return [replace(part, artefact=artefact, feature=feature) for part, feature in zip(own, features, strict=True)]
 
 
 def _joined(artefact: Artefact, own: list[Readings]) -> Readings:

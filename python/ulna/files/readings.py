@@ -1,17 +1,21 @@
-"""Readings: CSV or Parquet tables, one touch a row (or, for lengths, two poses a row), as arrays in mm and rad."""
+"""Readings: tables of any format, one touch a row (or, for lengths, two poses a row), as arrays in mm and rad."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
 from ulna.files.checks import check_ids, check_scale
-from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, remark_unused
+from ulna.files.columns import Source, check_columns, codes, each_row, is_numeric, known_columns, remark_unused
+from ulna.files.header import Header
+from ulna.files.layout import Layout
+from ulna.files.own_points import has_own_points, own_points
+from ulna.files.rows import Rows, Selection
 from ulna.files.table import file_sha256, read_header, read_table
 from ulna.files.units import RAD_PER, Units
 from ulna.model import Arm
@@ -20,31 +24,63 @@ from ulna.study import Artefact, InputFile, Readings
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-WHAT = "a readings file (CSV with commas and a header q1,q2,…, or Parquet)"
+WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 
 
 def read_readings(
-    source: Source, arm: Arm, artefacts: dict[str, Artefact], units: Units, remarks: list[str]
+    source: Source,
+    arm: Arm,
+    artefacts: dict[str, Artefact],
+    units: Units,
+    remarks: list[str],
+    which: Rows = "fit",
 ) -> tuple[list[Readings], InputFile]:
     """One file's readings, a part for each artefact in it. Raises UlnaInputError; remarks are added to."""
     path = source.study.parent / source.entry.file
-    header = read_header(path, WHAT)
-    check_columns(header, arm.n, arm.name, remarks)
-    frame = read_table(header, is_numeric)
-    count = len(frame)
-    if not count:
+    frame, row, header, rows = _table(path, source, arm, artefacts, remarks, which)
+    artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}", row)
+    parts: list[Readings] = []
+    check_ids(frame, row, header)
+    for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
+        chosen = list(artefacts.values())[index]
+        own = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
+        part = frame if len(own) == len(frame) else frame[own]
+        parts.append(_part(part, row[own], chosen, header, source, arm, units, remarks))
+    return parts, InputFile(path, file_sha256(path), rows)
+
+
+def _table(
+    path: Path, source: Source, arm: Arm, artefacts: dict[str, Artefact], remarks: list[str], which: Rows
+) -> tuple[pl.DataFrame, I64, Header, int]:
+    """The columns that are known, of the rows that are used; (N,) those rows' numbers in the file; the number of all
+    its rows. Raises UlnaInputError."""
+    entry = source.entry
+    place = f"{source.study}: key '{source.key}"
+    layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
+    coordinates = any(map(has_own_points, artefacts.values()))
+    header = read_header(path, WHAT, layout, known_columns(arm.n, coordinates))
+    selection = Selection(entry.where or {}, entry.split, which, place)
+    asked = list(dict.fromkeys(selection.columns(header).values()))
+    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, asked)
+    if asked:
+        texts = header.cells(lambda _: False, asked)
+        chosen, rows = selection.of(texts, header, remarks), len(texts)
+        row = chosen + 1
+        every = header.cells(is_numeric, needed)
+        if len(every) != rows:  # arrays in one file may be of several lengths
+            raise UlnaInputError(
+                f"{path}: {', '.join(map(header.own, asked))} {'have' if len(asked) > 1 else 'has'} {rows} rows, the "
+                f"readings {len(every)}; expected as many where rows are chosen by them ({place}'). Correct the arrays."
+            )
+        frame = header.checked(every[chosen], is_numeric, row)
+    else:
+        frame = read_table(header, is_numeric, needed)
+        row, rows = np.arange(1, len(frame) + 1), len(frame)
+    if not rows:
         raise UlnaInputError(
             f"{path}: there are no rows; expected at least one reading. Add them or remove '{source.key}'."
         )
-    artefact = codes(frame, header, source, "artefact", list(artefacts), f"{source.study}")
-    parts: list[Readings] = []
-    check_ids(frame, header)
-    for index in np.unique(artefact).tolist() if isinstance(artefact, np.ndarray) else [artefact]:
-        chosen = list(artefacts.values())[index]
-        rows = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(count)
-        own = frame if len(rows) == count else frame[rows]
-        parts.append(_part(own, rows + 1, chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), count)
+    return frame, row, header, rows
 
 
 def _part(
@@ -66,6 +102,9 @@ def _part(
             + "; expected two poses and their distance a row for kind 'length', else one. Correct the kind or the "
             "columns."
         )
+    feature: I64 | None = None
+    if has_own_points(artefact):
+        artefact, feature = own_points(frame, row, artefact, header, source, units, remarks)
     factors = _angle_factors(source, arm, units)
     q_rad = angles(frame, "q", factors)
     check_scale(q_rad, "q", factors, source.entry.angle or units.angle, header, row)
@@ -82,7 +121,7 @@ def _part(
         probe=each_row(
             codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row, remarks), len(row)
         ),
-        feature=_features(frame, row, artefact, header, source, remarks),
+        feature=_features(frame, row, artefact, header, source, remarks) if feature is None else feature,
         placement=_placements(frame, row, source, header, remarks),
         row=row,
         file=np.full(len(row), source.index, dtype=np.int64),
@@ -126,7 +165,7 @@ def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, 
     if (lengths < 0).any():
         first = int(np.argmax(lengths < 0))
         raise UlnaInputError(
-            f"{header.path}: {header.where(int(row[first]))}, column 'length': got {lengths[first]:g}, expected a "
+            f"{header.path}: {header.at(int(row[first]), 'length')}: got {lengths[first]:g}, expected a "
             "distance of 0 or more. Correct it."
         )
     return lengths * units.mm

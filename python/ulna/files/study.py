@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import warnings as python_warnings
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from ulna.errors import InputWarning, UlnaInputError
+from ulna.errors import InputWarning, UlnaInputError, nearest
 from ulna.files.arm import load_arm_and_hash
 from ulna.files.artefacts import ArtefactTable, check_kinds, make_artefact
 from ulna.files.checks import check_bar_ends, check_limits, check_repeats
 from ulna.files.columns import ReadingsEntry, Source
 from ulna.files.merge import merge
 from ulna.files.models import Strict, fill
+from ulna.files.own_points import has_own_points
 from ulna.files.readings import read_readings
+from ulna.files.rows import Rows
 from ulna.files.toml import check_format, read_toml
 from ulna.files.units import Units
 from ulna.model import Arm
@@ -77,15 +79,16 @@ class StudyFile(Strict):
     fit: FitTable = FitTable()
 
 
-def load_study(path: Path) -> Study:
+def load_study(path: Path, rows: Rows = "fit") -> Study:
     """Read a study and all that it names. Raises UlnaInputError for the first thing that cannot be used.
+
+    rows: of files with the key `split` those to fit, those to check, or both; a file without it is there to fit.
 
     What can be used with a remark is in `Study.warnings`, and is issued as InputWarning.
     """
-    document, digest = read_toml(path, WHAT)
-    check_format(document, path, "ulna-study")
-    check_kinds(document, path)
+    document, digest = _document(path)
     file = fill(StudyFile, document, path)
+    split = _check_rows(file, path, rows)
     arm_path = path.parent / file.arm
     arm, arm_digest = load_arm_and_hash(arm_path)
     fit = _fit(file.fit, file.units, path)
@@ -97,12 +100,39 @@ def load_study(path: Path) -> Study:
         artefacts[name], features_file = make_artefact(name, table, file.units, path, remarks)
         if features_file is not None:
             files.append(features_file)
-    readings = _readings(file, path, arm, arm_path, artefacts, files, remarks)
-    study = Study(path, arm, readings, noise, fit, files, remarks)
+    readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
+    study = Study(path, arm, readings, noise, fit, files, remarks, rows if split else None)
     study.hold_mask()  # a pattern that matches nothing is told now, not after the work
     for remark in remarks:
         python_warnings.warn(remark, InputWarning, stacklevel=3)
     return study
+
+
+def rows_to_judge(path: Path) -> Rows:
+    """The rows with which an arm is judged where nobody says otherwise: those to check where the study has a split,
+    else all. Raises UlnaInputError."""
+    file = fill(StudyFile, _document(path)[0], path)
+    return "check" if any(entry.split is not None for entry in file.readings) else "all"
+
+
+def _document(path: Path) -> tuple[dict[str, Any], str]:
+    document, digest = read_toml(path, WHAT)
+    check_format(document, path, "ulna-study")
+    check_kinds(document, path)
+    return document, digest
+
+
+def _check_rows(file: StudyFile, path: Path, rows: str) -> bool:
+    """Whether the study has a split. Raises UlnaInputError for rows that it does not tell apart."""
+    split = any(entry.split is not None for entry in file.readings)
+    if rows not in get_args(Rows):
+        raise UlnaInputError(f"{path}: rows '{rows}'; expected fit, check or all.{nearest(rows, get_args(Rows))}")
+    if rows == "check" and not split:
+        raise UlnaInputError(
+            f"{path}: the rows to check were asked for, but no [[readings]] has the key 'split'; expected, say, "
+            'split = { column = "set", fit = "train", check = "test" }. Add it, or ask for all rows.'
+        )
+    return split
 
 
 def _readings(
@@ -113,20 +143,23 @@ def _readings(
     artefacts: dict[str, Artefact],
     files: list[InputFile],
     remarks: list[str],
+    rows: Rows,
 ) -> list[Readings]:
     parts: list[Readings] = []
     for number, entry in enumerate(file.readings, start=1):
+        if rows == "check" and entry.split is None:
+            continue
         source = Source(path, f"readings.{number}", entry, len(files), arm_path)
-        read, used = read_readings(source, arm, artefacts, file.units, remarks)
+        read, used = read_readings(source, arm, artefacts, file.units, remarks, rows)
         files.append(used)
         parts += read
-    groups = merge(parts, artefacts, path)
+    groups = merge(parts, artefacts, files, path)
     for name in artefacts:
-        if all(group.artefact.name != name for group in groups):
+        if rows != "check" and all(group.artefact.name != name for group in groups):
             remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
     for group in groups:
         check_bar_ends(group, files, path)
-        check_repeats(group, files, remarks)
+        check_repeats(group, files, remarks, own_points=has_own_points(artefacts[group.artefact.name]))
         check_limits(group, arm, files, remarks)
     return groups
 

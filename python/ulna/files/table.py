@@ -1,23 +1,23 @@
-"""Reading tables, CSV or Parquet, as columns: fast where all is well, exact about the cell where it is not.
-
-Polars reads the columns. Only when it refuses a file, or leaves a gap or a number that is none, is the file gone
-through again cell by cell (cells.py) to find the first bad one.
-"""
+"""The door to tables of every format: recognised by what is in them, not by how they are called."""
 
 from __future__ import annotations
 
-import csv
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
 import polars as pl
-import polars.exceptions
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import WHAT, Header, Numeric, bad_cell, name_bad_cell, number_of
+from ulna.files.cells import WHAT, number_of
+from ulna.files.header import Header, Numeric, Piece
+from ulna.files.layout import AS_EXPECTED, Layout
 from ulna.files.toml import read_bytes
+
+#: an HDF5 file may begin with a block of somebody else's, of one of these lengths; MATLAB writes 512 bytes
+_HDF5_OFFSETS = (0, 512, 1024, 2048, 4096, 8192, 16384, 32768)
+_HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
 def file_sha256(path: Path) -> str:
@@ -26,44 +26,50 @@ def file_sha256(path: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def read_header(path: Path, what: str = WHAT) -> Header:
-    """Which columns a table has. Raises UlnaInputError for a file that is none."""
+def read_header(
+    path: Path, what: str = WHAT, layout: Layout = AS_EXPECTED, known: Sequence[str] | None = None
+) -> Header:
+    """Which columns a table has, called as `layout` says; `known`: the names that it may give them.
+
+    Raises UlnaInputError for a file that is no table, or none that is written like this.
+    """
+    header = _opened(path, what, layout)
+    _check_names(header, layout)
+    return layout.mapped(header, known or [])
+
+
+def _opened(path: Path, what: str, layout: Layout) -> Header:
+    # The rooms are entered when they are needed: a study of CSV files loads no HDF5 library.
     start = read_bytes(path, what, limit=1 << 16)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     if start.startswith(b"PAR1"):
-        try:
-            columns = pl.read_parquet_schema(path)
-        except (polars.exceptions.PolarsError, OSError) as error:
-            raise UlnaInputError(
-                f"{path}: not a readable Parquet file ({_first_line(error)}); expected {what}."
-            ) from None
-        return _checked(Header(path, list(columns), is_csv=False))
-    if start.startswith(b"PK\x03\x04"):
-        raise UlnaInputError(f"{path}: this looks like an Excel workbook; expected {what}. Export the sheet as CSV.")
-    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise UlnaInputError(f"{path}: the file is UTF-16; expected {what} in UTF-8. Save it as UTF-8.")
-    if b"\x00" in start:
-        raise UlnaInputError(f"{path}: the file is binary; expected {what}.")
-    try:
-        line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
-    except UnicodeDecodeError:
-        raise UlnaInputError(f"{path}: line 1 is not UTF-8 text; expected {what}. Save it as UTF-8.") from None
-    if "\r" in line:
-        raise UlnaInputError(
-            f"{path}: the lines end with a lone carriage return; expected a line feed (or both). "
-            "Save the table again with Unix or Windows line ends."
-        )
-    for separator, name in ((";", "semicolons"), ("\t", "tabs")):
-        if separator in line and "," not in line:
-            raise UlnaInputError(
-                f"{path}: line 1: the columns are separated by {name}; expected commas, and numbers with a decimal "
-                "point. Export the table again with commas between columns and points in numbers."
-            )
-    return _checked(Header(path, [name.strip() for name in next(csv.reader([line]))], is_csv=True))
+        from ulna.files.tables.parquet import ParquetTable, open_parquet
+
+        layout.check_kind(path, ParquetTable)
+        return open_parquet(path, what)
+    if any(start.startswith(_HDF5, offset) for offset in _HDF5_OFFSETS):
+        from ulna.files.tables.hdf5 import Hdf5Table, open_hdf5
+
+        layout.check_kind(path, Hdf5Table)
+        return open_hdf5(path, what, layout)
+    if start[124:128] in (b"\x00\x01IM", b"\x01\x00MI"):
+        from ulna.files.tables.matfile import MatTable, open_mat
+
+        layout.check_kind(path, MatTable)
+        return open_mat(path, what, layout)
+    if start.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
+        from ulna.files.tables.workbook import SheetTable, open_workbook
+
+        layout.check_kind(path, SheetTable)
+        return open_workbook(path, what, layout)
+    from ulna.files.tables.text import TextTable, open_text
+
+    layout.check_kind(path, TextTable)
+    return open_text(path, start, what, layout)
 
 
-def _checked(header: Header) -> Header:
+def _check_names(header: Header, layout: Layout) -> None:
     for k, name in enumerate(header.columns, start=1):
         if not name:
             raise UlnaInputError(
@@ -71,123 +77,36 @@ def _checked(header: Header) -> Header:
             )
     if all(number_of(name) is not None for name in header.columns):
         raise UlnaInputError(
-            f"{header.path}: line 1 holds numbers ({', '.join(header.columns[:3])}, …); expected a header such as "
-            "q1,q2,…. Add one as the first line."
+            f"{header.path}: {header.head} holds numbers ({', '.join(header.columns[:3])}, …); expected a header such "
+            f"as q1,q2,…. Add one as the first line, or say {layout.say('header', False)} and name the columns."
         )
     for left, right in pairwise(sorted(header.columns)):
         if left == right:
             raise UlnaInputError(f"{header.path}: the column '{left}' appears twice; expected each once. Remove one.")
-    return header
 
 
-def read_table(header: Header, numeric: Numeric) -> pl.DataFrame:
-    """All columns: Float64 where `numeric` says so, else String; every cell filled, every number finite.
+def read_table(header: Header, numeric: Numeric, columns: Sequence[str] | None = None) -> pl.DataFrame:
+    """Some columns, or all: Float64 where `numeric` says so, else String; every cell filled, every number finite.
 
     Raises UlnaInputError naming row, column and value of the first cell that is not.
     """
-    try:
-        frame = _scan_csv(header, numeric).collect() if header.is_csv else pl.read_parquet(header.path)
-    except (polars.exceptions.PolarsError, OSError) as error:
-        _explain(header, numeric, error)
-        frame = _stripped(_scan_csv(header, lambda _: False).collect(), numeric)
-    if not header.is_csv:
-        frame = _typed(header, frame, numeric)
-    return _whole(header, frame, numeric)
+    return header.frame(numeric, header.columns if columns is None else columns)
 
 
 def iter_tables(header: Header, numeric: Numeric, rows: int = 1 << 18) -> Iterator[pl.DataFrame]:
-    """The same in pieces of about `rows` rows and bounded memory, for files of any size."""
-    done = 0
-    try:
-        for piece in _pieces(header, numeric, rows):
-            yield piece
-            done += len(piece)
-    except (polars.exceptions.PolarsError, OSError) as error:
-        _explain(header, numeric, error)
-        skip = done
-        for text in _pieces(header, lambda _: False, rows):  # numbers with spaces around them: as in `read_table`
-            if len(text) > skip:
-                yield _stripped(text.slice(skip), numeric)
-            skip = max(0, skip - len(text))
+    """All columns in pieces of about `rows` rows and, of CSV and Parquet, bounded memory, for files of any size."""
+    numbers = [name for name in header.columns if numeric(name)]
+    for piece in header.pieces(numbers, [name for name in header.columns if name not in numbers], rows):
+        columns = {name: piece.numbers[:, k] for k, name in enumerate(numbers)} | piece.texts
+        yield pl.DataFrame({name: columns[name] for name in header.columns})
 
 
-def _pieces(header: Header, numeric: Numeric, rows: int) -> Iterator[pl.DataFrame]:
-    scan = _scan_csv(header, numeric) if header.is_csv else pl.scan_parquet(header.path)
-    before, blank = 0, False
-    for piece in scan.collect_batches(chunk_size=rows, maintain_order=True):
-        frame = piece if header.is_csv else _typed(header, piece, numeric, before)
-        frame = _whole(header, frame, numeric, before)
-        if blank and len(frame):
-            name_bad_cell(header, numeric)  # the blank lines were not at the end of the file
-        blank = len(frame) < len(piece)
-        before += len(frame)
-        yield frame
+def count_rows(header: Header) -> int:
+    """Data rows, 0 where nobody knows without reading them."""
+    return header.rows or 0
 
 
-def _scan_csv(header: Header, numeric: Numeric) -> pl.LazyFrame:
-    # The names come from our own reading of the header, which forgives spaces and a byte-order mark.
-    schema = {name: pl.Float64 if numeric(name) else pl.String for name in header.columns}
-    return pl.scan_csv(
-        header.path,
-        has_header=False,
-        skip_rows=header.lines,
-        schema=schema,
-        glob=False,
-        separator=header.separator,
-        decimal_comma=header.decimal_comma,
-    )
-
-
-def _explain(header: Header, numeric: Numeric, error: Exception) -> None:
-    """Name the bad cell; return where there is none, because numbers have harmless spaces around them."""
-    if not header.is_csv:
-        raise UlnaInputError(f"{header.path}: cannot be read ({_first_line(error)}); expected {WHAT}.") from None
-    name_bad_cell(header, numeric)
-
-
-def _stripped(text: pl.DataFrame, numeric: Numeric) -> pl.DataFrame:
-    return text.with_columns(pl.col(c).str.strip_chars().cast(pl.Float64) for c in text.columns if numeric(c))
-
-
-def _typed(header: Header, frame: pl.DataFrame, numeric: Numeric, before: int = 0) -> pl.DataFrame:
-    """Parquet columns as Float64 or String."""
-    columns = []
-    for name, column in zip(header.columns, frame, strict=True):
-        if not numeric(name):
-            columns.append(column.cast(pl.String))
-        elif column.dtype.is_numeric():
-            columns.append(column.cast(pl.Float64))
-        else:
-            raise UlnaInputError(
-                f"{header.path}: {header.where(before + 1)}, column '{name}': got {column[0]!r} ({column.dtype}), "
-                "expected a number. Write the column as floating-point numbers."
-            )
-    return pl.DataFrame(columns)
-
-
-def _whole(header: Header, frame: pl.DataFrame, numeric: Numeric, before: int = 0) -> pl.DataFrame:
-    """The frame, if every cell is filled and every number finite; strings without spaces around them."""
-    first: tuple[int, str] | None = None
-    for column in frame:
-        bad = column.is_null()
-        if numeric(column.name):
-            bad = bad | ~column.is_finite().fill_null(False)
-        if bad.any():
-            row = int(bad.arg_true()[0])
-            first = min(first, (row, column.name), key=lambda at: at[0]) if first else (row, column.name)
-    if first is None:
-        spaced = [c.name for c in frame if not numeric(c.name) and bool(c.str.contains(r"^\s|\s$").any())]
-        return frame.with_columns(pl.col(spaced).str.strip_chars()) if spaced else frame
-    if header.is_csv:
-        rest = frame.slice(first[0])
-        if rest.null_count().sum_horizontal().item() == rest.height * rest.width:  # blank lines at the end are harmless
-            return _whole(header, frame.head(first[0]), numeric, before)
-        name_bad_cell(header, numeric)
-    value = frame[first[1]][first[0]]
-    raise UlnaInputError(
-        bad_cell(header, before + first[0] + 1, first[1], "" if value is None else str(value), numeric)
-    )
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).splitlines()[0] if str(error) else type(error).__name__
+def stream(header: Header, numbers: Sequence[str], texts: Sequence[str], rows: int = 1 << 16) -> Iterator[Piece]:
+    """The named columns in pieces of about `rows` rows, of CSV and Parquet files in bounded memory whatever their size
+    and layout. Raises UlnaInputError naming the first bad cell."""
+    return header.pieces(numbers, texts, rows)

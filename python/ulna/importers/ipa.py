@@ -2,7 +2,10 @@
 
 A table with semicolons and decimal commas: six joint angles in rad, the target's position in mm in the tracker's frame,
 the temperature. Every reading touched a point of its own, whose coordinates the tracker gives: an artefact of kind
-`points` with as many features as readings, standing once, at an unknown pose (`frame = "free"`: the tracker's place).
+`points` without features, standing once, at an unknown pose (`frame = "free"`: the tracker's place).
+
+A study can name such a table as it is (keys separator, decimal and columns); the importer adds the arm, and chooses
+which rows are fitted.
 """
 
 from __future__ import annotations
@@ -14,8 +17,8 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
 from ulna.files.table import read_table
+from ulna.files.tables.text import TextTable
 from ulna.files.toml import read_bytes
 from ulna.importers.folder import write_study_folder
 from ulna.importers.robots import ur10
@@ -28,8 +31,14 @@ JOINTS = (
     "wrist_2_joint",
     "wrist_3_joint",
 )
-POSITION = ("measurement_x", "measurement_y", "measurement_z")
-TEMPERATURE = "measurement_temperature"
+COLUMNS = {
+    **{joint: f"q{k}" for k, joint in enumerate(JOINTS, start=1)},
+    "measurement_temperature": "temperature",
+    "measurement_x": "x",
+    "measurement_y": "y",
+    "measurement_z": "z",
+}
+"""The table's name → Ulna's."""
 
 WHAT = "a table with semicolons and a header shoulder_pan_joint;…;measurement_x;…"
 
@@ -43,7 +52,6 @@ file = "{readings}"
 
 [artefact.tracker]              # every reading is a point of its own; the tracker's place is unknown
 kind = "points"
-features = "{points}"
 frame = "free"
 """
 
@@ -65,27 +73,24 @@ def import_ipa_ur10(
     place is taken as new in each of so many equal parts of the file. Raises UlnaInputError; nothing is written then.
     """
     header = _header(path)
-    used = {*JOINTS, *POSITION, TEMPERATURE}
-    frame = read_table(header, lambda column: column in used)
+    columns = list(COLUMNS.values())
+    frame = read_table(header, lambda column: column in columns, columns)
     count = len(frame)
     fitted = _chosen(count, fit, every, spread, path)
-    names = [f"m{row}" for row in range(1, count + 1)]
     readings = frame.select(
-        placement=pl.Series([f"s{1 + standings * row // count}" for row in range(count)]),
-        feature=pl.Series(names),
-        **{f"q{k}": pl.col(joint) for k, joint in enumerate(JOINTS, start=1)},
-        temperature=pl.col(TEMPERATURE),
+        pl.Series("placement", [f"s{1 + standings * row // count}" for row in range(count)]),
+        pl.Series("id", [f"m{row}" for row in range(1, count + 1)]),
+        *columns,
     )
-    points = frame.select(feature=pl.Series(names), x=POSITION[0], y=POSITION[1], z=POSITION[2])
     ending = "parquet" if parquet else "csv"
-    parts = {"study": ("readings", "points", fitted)}
+    parts = {"study": ("readings", fitted)}
     if not fitted.all():
-        parts["held-out"] = ("held-out", "held-out-points", ~fitted)
+        parts["held-out"] = ("held-out", ~fitted)
     studies: dict[str, str] = {}
     tables: dict[str, pl.DataFrame] = {}
-    for study, (rows, features, mask) in parts.items():
-        studies[f"{study}.toml"] = STUDY.format(readings=f"{rows}.{ending}", points=f"{features}.{ending}")
-        tables |= {f"{rows}.{ending}": readings.filter(mask), f"{features}.{ending}": points.filter(mask)}
+    for study, (rows, mask) in parts.items():
+        studies[f"{study}.toml"] = STUDY.format(readings=f"{rows}.{ending}")
+        tables[f"{rows}.{ending}"] = readings.filter(mask)
     write_study_folder(out, ur10(), studies, tables, force=force)
     return int(fitted.sum()), int((~fitted).sum())
 
@@ -110,12 +115,12 @@ def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -
     return chosen
 
 
-def _header(path: Path) -> Header:
+def _header(path: Path) -> TextTable:
     start = read_bytes(path, WHAT, limit=1 << 14)
     columns = [name.strip() for name in start.split(b"\n", 1)[0].decode("utf-8-sig", "replace").split(";")]
-    for column in (*JOINTS, *POSITION, TEMPERATURE):
+    for column in COLUMNS:
         if column not in columns:
             raise UlnaInputError(
                 f"{path}: line 1: the column '{column}' is missing; expected {WHAT}. Name the right file."
             )
-    return Header(path, columns, is_csv=True, separator=";", decimal_comma=True)
+    return TextTable(path, columns, separator=";", decimal=",").renamed(COLUMNS)

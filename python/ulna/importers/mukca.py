@@ -12,8 +12,8 @@ from pathlib import Path
 import polars as pl
 
 from ulna.errors import UlnaInputError
-from ulna.files.cells import Header
 from ulna.files.table import read_table
+from ulna.files.tables.text import TextTable
 from ulna.files.toml import read_bytes
 from ulna.importers.folder import write_study_folder
 from ulna.importers.robots import panda
@@ -95,8 +95,7 @@ def _seat(path: Path, joints: int) -> pl.DataFrame:
         raise UlnaInputError(
             f"{path}: row 1 has {width} columns, the arm has {joints} joints; expected as many. Name its URDF."
         )
-    header = Header(path, [f"q{k}" for k in range(1, joints + 1)], is_csv=True, lines=0)
-    return read_table(header, lambda _: True)
+    return read_table(TextTable(path, [f"q{k}" for k in range(1, joints + 1)], lines=0), lambda _: True)
 
 
 def _arm(folder: Path, urdf: Path | None, tip_link: str | None) -> Arm:

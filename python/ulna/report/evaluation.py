@@ -11,8 +11,9 @@ from ulna.report.figures import overall, per_placement
 
 def evaluation_report(found: Evaluation) -> list[RenderableType]:
     """Per placement, then over all."""
+    rows = {"fit": " that were fitted", "check": " kept to check the fit"}.get(found.provenance.get("rows", ""), "")
     return [
-        Text(f"{found.arm.name}: {found.readings} readings, the arm unchanged."),
+        Text(f"{found.arm.name}: {found.readings} readings{rows}, the arm unchanged."),
         "",
         *per_placement(found.artefacts, "-o DIR writes all of them to evaluation.json."),
         "",

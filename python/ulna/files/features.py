@@ -1,0 +1,30 @@
+"""The table of features that an artefact may name: which columns it has, and how it is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ulna.errors import UlnaInputError
+from ulna.files.columns import remark_strange
+from ulna.files.header import Header
+from ulna.files.layout import Layout, TableKeys
+from ulna.files.table import read_header
+
+WHAT = "a features file (a table with columns feature,x,y,z or feature,x,y,z,u)"
+COLUMNS = ("feature", "x", "y", "z", "u")
+
+
+def open_features(file: Path, keys: TableKeys | None, key: str, study: Path, remarks: list[str]) -> Header:
+    """The table of an artefact's features. `key`: `artefact.plate`. Raises UlnaInputError; remarks are added to."""
+    layout = Layout.of(keys or TableKeys(), (f"{study}: key '{key}.features_format.", "'"), f"{key}.features_format")
+    header = read_header(file, WHAT, layout, COLUMNS)
+    for column in COLUMNS[:4]:
+        if column not in header.columns:
+            strange = next((other for other in header.columns if other not in COLUMNS), None)
+            unknown = "" if strange is None else f"unknown column '{strange}', and "
+            raise UlnaInputError(
+                f"{file}: {unknown}the column '{column}' is missing; the file has {', '.join(header.columns)[:80]}, "
+                f"expected feature,x,y,z and perhaps u. Add it, or map the columns with {key}.features_format.columns."
+            )
+    remark_strange(header, COLUMNS, COLUMNS, remarks)
+    return header

@@ -1,0 +1,118 @@
+"""Readings that bring the coordinates of what they touched: a laser tracker's, say. Every reading has a point of its
+own, so the artefact (kind `points` without `features`) is made of the readings."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError
+from ulna.files.columns import Source
+from ulna.files.header import Header
+from ulna.files.units import Units
+from ulna.study import Artefact, Readings
+
+I64 = NDArray[np.int64]
+Place = tuple[float, float, float]
+
+
+def has_own_points(artefact: Artefact) -> bool:
+    """Whether the readings of an artefact bring its features with them."""
+    return artefact.kind == "points" and not artefact.features
+
+
+def own_points(
+    frame: pl.DataFrame,
+    row: I64,
+    artefact: Artefact,
+    header: Header,
+    source: Source,
+    units: Units,
+    remarks: list[str],
+) -> tuple[Artefact, I64]:
+    """The artefact with the points of these rows as features, and (N,) the feature of each row.
+
+    A point is called by the reading's id, or m1, m2, … by its row. Raises UlnaInputError.
+    """
+    lacking = [name for name in ("x", "y", "z") if name not in frame.columns]
+    if lacking:
+        raise UlnaInputError(
+            f"{header.path}: the column '{lacking[0]}' is missing: artefact '{artefact.name}' has no features of its "
+            f"own, so each reading needs the coordinates of its point; expected columns x, y, z, in {units.length}. "
+            f"Add or map them, or give artefact.{artefact.name}.features in {source.study}."
+        )
+    if "feature" in frame.columns or source.entry.feature is not None:
+        remarks.append(
+            f"{header.path}: the names of features are not used: artefact '{artefact.name}' has none of its own, and "
+            "each reading touched another point."
+        )
+    xyz_mm = (frame.select("x", "y", "z").to_numpy() * units.mm).tolist()
+    names = frame["id"].to_list() if "id" in frame.columns else [f"m{k}" for k in row]
+    features: dict[str, Place] = {}
+    for name, (x, y, z) in zip(names, xyz_mm, strict=True):
+        features[name] = (x, y, z)  # a name stands twice only where one reading does: see check_ids
+    numbers = {name: k for k, name in enumerate(features)}
+    u_mm = _u_mm(frame, row, artefact, header, source, units, remarks)
+    made = dataclasses.replace(artefact, features=features, u_mm=u_mm)
+    return made, np.array([numbers[name] for name in names], dtype=np.int64)
+
+
+def _u_mm(
+    frame: pl.DataFrame,
+    row: I64,
+    artefact: Artefact,
+    header: Header,
+    source: Source,
+    units: Units,
+    remarks: list[str],
+) -> float:
+    """The column `u` as one number: the root of its mean square."""
+    if "u" not in frame.columns:
+        return artefact.u_mm
+    if artefact.u_mm:
+        raise UlnaInputError(
+            f"{source.study}: key 'artefact.{artefact.name}.u': got {artefact.u_mm / units.mm:g}, but {header.path} "
+            "has a column 'u' as well. Remove one of them."
+        )
+    u = frame["u"].to_numpy()
+    if (u < 0).any():
+        first = int(np.argmax(u < 0))
+        raise UlnaInputError(
+            f"{header.path}: {header.at(int(row[first]), 'u')}: got {u[first]:g}, expected a standard uncertainty of 0 "
+            "or more. Correct it."
+        )
+    mean = float(np.sqrt(np.mean(u**2)))
+    if np.ptp(u) > 1e-12 * mean:
+        remarks.append(
+            f"{header.path}: {header.named('u')} goes from {u.min():g} to {u.max():g}; all points are weighted alike, "
+            f"with its root mean square {mean:g}."
+        )
+    return mean * units.mm
+
+
+def joined_points(own: list[Readings], files: list[Path]) -> tuple[Artefact, list[I64]]:
+    """One artefact of the points in several files, and for each of them (N,) the feature of each row.
+
+    files: by `Readings.file`. A name that stands for another point in an earlier file gets the file's name before it.
+    """
+    features: dict[str, Place] = {}
+    feature: list[I64] = []
+    for part in own:
+        file = files[int(part.file[0])].name
+        called: dict[str, str] = {}
+        for name, place in part.artefact.features.items():
+            new, number = name, 1
+            while features.setdefault(new, place) != place:
+                new = f"{file}:{name}" if number == 1 else f"{file}:{name}:{number}"
+                number += 1
+            called[name] = new
+        numbers = {name: k for k, name in enumerate(features)}
+        order = np.array([numbers[new] for new in called.values()], dtype=np.int64)
+        feature.append(order[part.feature])
+    counts = [len(part) for part in own]
+    u_mm = float(np.sqrt(np.average([part.artefact.u_mm**2 for part in own], weights=counts)))
+    return dataclasses.replace(own[0].artefact, features=features, u_mm=u_mm), feature

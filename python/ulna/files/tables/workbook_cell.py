@@ -1,0 +1,54 @@
+"""One cell of an Excel workbook as it stands in the file: its formula, and the text of its value.
+
+The parts of the file are those of ECMA-376 (Office Open XML), Part 1, sections 18.2 and 18.3.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+import xml.etree.ElementTree as ElementTree
+import zipfile
+import zlib
+from pathlib import Path
+
+_ID = "{http://schemas.openxmlformats.org/officeDocument/2006/relationships}id"
+
+
+def address(sheet: str, row: int, column: int) -> str:
+    """`Sheet1!C7`, counted from 0; without the sheet `C7`. A sheet's name is in quotes where Excel writes them."""
+    letters = ""
+    number = column + 1
+    while number:
+        number, rest = divmod(number - 1, 26)
+        letters = chr(ord("A") + rest) + letters
+    if not sheet:
+        return f"{letters}{row + 1}"
+    plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_.]*", sheet)
+    quoted = sheet if plain else "'" + sheet.replace("'", "''") + "'"
+    return f"{quoted}!{letters}{row + 1}"
+
+
+def stored_cell(path: Path, sheet: str, reference: str) -> tuple[str | None, str]:
+    """The formula (None where there is none) and the text of the value of one cell, such as C7; (None, "") where the
+    file has no such cell, or is not built as expected: this only makes a message clearer."""
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open(_part(archive, sheet)) as stream:
+            for _, element in ElementTree.iterparse(stream):
+                if element.tag.endswith("}row"):
+                    element.clear()
+                elif element.tag.endswith("}c") and element.get("r") == reference:
+                    formula = next((each.text or "" for each in element if each.tag.endswith("}f")), None)
+                    return formula, next((each.text or "" for each in element if each.tag.endswith("}v")), "")
+    except (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, OSError, RuntimeError, StopIteration):
+        pass
+    return None, ""
+
+
+def _part(archive: zipfile.ZipFile, sheet: str) -> str:
+    """Name of the archive's part that holds a sheet."""
+    book = ElementTree.fromstring(archive.read("xl/workbook.xml"))
+    key = next(each.get(_ID) for each in book.iter() if each.tag.endswith("}sheet") and each.get("name") == sheet)
+    links = ElementTree.fromstring(archive.read("xl/_rels/workbook.xml.rels"))
+    target = next(each.get("Target") or "" for each in links if each.get("Id") == key)
+    return posixpath.normpath(posixpath.join("/xl", target)).lstrip("/")
