@@ -95,12 +95,11 @@ def urdf(
 
     Example: ulna import urdf iiwa14.urdf -o arm.toml --tip-link tool0
     """
-    from ulna.importers.urdf import arm_from_chain, read_chain
+    from ulna.importers.urdf import import_urdf
 
-    name, steps = read_chain(file, tip_link)
-    arm = arm_from_chain(name, steps, file)
-    arm.save(out, force=force)
-    _say(f"{out}: '{arm.name}', {arm.n} joints, probe 'ball'.")
+    found = import_urdf(file, out, tip_link, force)
+    _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe 'ball' at link '{found.chain.tip_link}'.")
+    _say(found.remark)
 
 
 def _say(line: str) -> None:
