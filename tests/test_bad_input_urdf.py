@@ -62,7 +62,11 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no parent": ('<parent link="l1"/>', "", ("joint 'j2' names no parent link", "Add it")),
     "no name": ('name="j2"', 'nome="j2"', ("the joint above link 'l2' has no name", "Add it")),
     "sliding": ("continuous", "prismatic", ("joint 'j2' is of type 'prismatic'", "rotary", "--tip-link")),
-    "floating": ("continuous", "floating", ("joint 'j2' is of type 'floating'", "fixed joints up to the tip")),
+    "floating": (
+        "continuous",
+        "floating",
+        ("joint 'j2' is of type 'floating'", "fixed joints from base to tip", "--base-link"),
+    ),
     "no type": ('type="continuous"', "", ("joint 'j2' is of type 'None'",)),
     "mimicking": (
         '<axis xyz="0 2 0"/>',
@@ -140,6 +144,7 @@ def test_bombs_and_files_of_the_reader_are_left_alone(tmp_path: Path) -> None:
         ('lower="-3" ', "", (0.0, 2.5)),  # URDF: a limit that is not there is 0
         ('lower="-3" upper="2.5"', "", None),
         ('lower="-3" upper="2.5"', 'lower="0" upper="0"', None),
+        ('lower="-3" upper="2.5"', 'lower="-1e16" upper="inf"', None),
         ('type="revolute"', 'type="continuous"', None),
     ],
 )
@@ -152,6 +157,27 @@ def _branch(name: str, parent: str, kind: str, more: str = "") -> str:
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{name}_link"/>'
         f'<origin xyz="0.01 0 0"/><axis xyz="0 0 1"/>{more}</joint>'
     )
+
+
+def test_a_base_in_the_middle(tmp_path: Path) -> None:
+    lift = _branch("lift", "world", "prismatic").replace("lift_link", "base")
+    beside = (
+        _branch("b1", "world", "revolute") + _branch("b2", "b1_link", "revolute") + _branch("b3", "b2_link", "fixed")
+    )
+    path = tmp_path / "two.urdf"
+    path.write_text(URDF.replace("</robot>", f"{lift}{beside}</robot>"))
+    assert read_chain(path).tip_link == "b3_link"
+    with pytest.raises(UlnaInputError, match=r"joint 'lift' is of type 'prismatic'.*--base-link"):
+        read_chain(path, "ball_link")
+    for tip_link in ("ball_link", None):
+        chain = read_chain(path, tip_link, "base")
+        assert (chain.base_link, chain.tip_link, len(chain.steps)) == ("base", "ball_link", 3)
+        assert arm_from_chain(chain)[0].tip([0.0, 0.0]) == pytest.approx([200, 0, 400], abs=1e-9)
+    with pytest.raises(UlnaInputError) as caught:
+        read_chain(path, None, "bass")
+    says(str(caught.value), f"{path}: there is no link 'bass' above a joint", "Did you mean 'base'?")
+    with pytest.raises(UlnaInputError, match="no link 'b3_link' below a joint"):
+        read_chain(path, "b3_link", "base")
 
 
 def test_which_link_is_the_tip(tmp_path: Path) -> None:

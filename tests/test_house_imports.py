@@ -30,6 +30,7 @@ PYTHON_LAYERS = [
         "cross_validate",
         "urdf",
         "importers",
+        "export",
         "reproduce",
     },
     {"report"},

@@ -87,7 +87,10 @@ def urdf(
     file: Annotated[Path, typer.Argument(help="The robot's drawing (URDF).")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Arm file to write.")],
     tip_link: Annotated[
-        str | None, typer.Option(help="The link whose origin is the ball; default: the last one.")
+        str | None, typer.Option(help="The link whose origin is the ball; default: ball_link, or the last one.")
+    ] = None,
+    base_link: Annotated[
+        str | None, typer.Option(help="The link that the arm stands on; default: the root of the drawing.")
     ] = None,
     force: Force = False,
 ) -> None:
@@ -97,7 +100,7 @@ def urdf(
     """
     from ulna.importers.urdf import import_urdf
 
-    found = import_urdf(file, out, tip_link, force)
+    found = import_urdf(file, out, tip_link, base_link, force)
     _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe 'ball' at link '{found.chain.tip_link}'.")
     _say(found.remark)
 

@@ -22,7 +22,7 @@ class Imported:
     arm: Arm
     chain: Chain
     t_root_base: F64
-    """(4, 4), mm: the arm's base frame in that of the description's root."""
+    """(4, 4), mm: the arm's base frame in that of the chain's first link."""
 
     @property
     def remark(self) -> str:
@@ -30,10 +30,12 @@ class Imported:
         return base_remark(self.t_root_base, f"of link '{self.chain.base_link}'")
 
 
-def import_urdf(path: Path, out: Path, tip_link: str | None = None, force: bool = False) -> Imported:
+def import_urdf(
+    path: Path, out: Path, tip_link: str | None = None, base_link: str | None = None, force: bool = False
+) -> Imported:
     """Write the arm file. Raises UlnaInputError; nothing is written then."""
     refuse_inputs([out], [path])
-    chain = read_chain(path, tip_link)
+    chain = read_chain(path, tip_link, base_link)
     arm, t_root_base = arm_from_chain(chain)
     found = Imported(arm, chain, t_root_base)
     lines = [f"Made of {path.name}, from link '{chain.base_link}' to link '{chain.tip_link}'.", found.remark]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -55,19 +56,22 @@ class Chain:
         return [step for step in self.steps if step.axis is not None]
 
 
-def read_chain(path: Path, tip_link: str | None = None) -> Chain:
-    """The chain from the root to a link; without one, to `ball_link` or the outermost link of the longest chain.
+def read_chain(path: Path, tip_link: str | None = None, base_link: str | None = None) -> Chain:
+    """The chain from one link, or the root, to another; without `tip_link` to `ball_link`, or to the outermost link of
+    the longest chain.
 
     Raises UlnaInputError for a file that is no URDF, an unknown link, two longest chains, or a joint on the way whose
     angle no encoder of its own gives.
     """
-    return chain_of(read_document(path), tip_link)
+    return chain_of(read_document(path), tip_link, base_link)
 
 
-def chain_of(document: Document, tip_link: str | None = None) -> Chain:
+def chain_of(document: Document, tip_link: str | None = None, base_link: str | None = None) -> Chain:
     """The same of a document that is read already."""
     above = _above(document)
     ends = _ends(above, document.path)
+    if base_link is not None:
+        above, ends = _from(base_link, above, document.path)
     if not ends:
         raise UlnaInputError(f"{document.path}: there are no joints; expected {WHAT} with at least two rotary joints.")
     if tip_link is None:
@@ -110,10 +114,26 @@ def _link(joint: Element, role: str, path: Path) -> str:
     return name
 
 
+def _from(
+    base_link: str, above: dict[str, tuple[str, Element]], path: Path
+) -> tuple[dict[str, tuple[str, Element]], dict[str, _End]]:
+    """The same with a link as root: without what is above it, or beside it."""
+    rest = {link: entry for link, entry in above.items() if link != base_link}
+    ends = {link: end for link, end in _ends(rest, path).items() if end.root == base_link}
+    if not ends:
+        parents = [parent for parent, _ in above.values()]
+        raise UlnaInputError(
+            f"{path}: there is no link '{base_link}' above a joint; expected the name of one."
+            f"{nearest(base_link, dict.fromkeys(parents))}"
+        )
+    return rest, ends
+
+
 @dataclass(frozen=True)
 class _End:
     """What lies between the root and a link."""
 
+    root: str
     joints: int = 0
     turning: int = 0
     last: str = ""
@@ -124,6 +144,7 @@ class _End:
     def below(self, joint: Element) -> _End:
         turns = joint.get("type") in TURNING
         return _End(
+            self.root,
             self.joints + 1,
             self.turning + turns,
             (joint.get("name") or "?") if turns else self.last,
@@ -145,7 +166,7 @@ def _ends(above: dict[str, tuple[str, Element]], path: Path) -> dict[str, _End]:
                 )
             parent, way[at] = above[at]
             at = parent
-        end = known.get(at, _End())
+        end = known.get(at, _End(at))
         for child in reversed(way):
             end = known[child] = end.below(way[child])
     return {link: known[link] for link in above}
@@ -160,7 +181,7 @@ def _outermost(ends: dict[str, _End], path: Path) -> str:
     pool = {link: end for link, end in ends.items() if end.usable and end.turning >= 2} or ends
     most = max(end.turning for end in pool.values())
     pool = {link: end for link, end in pool.items() if end.turning == most}
-    if len({end.last for end in pool.values()}) > 1:
+    if most >= 2 and len({end.last for end in pool.values()}) > 1:
         tips = [max((link for link in pool if pool[link].last == last), key=lambda link: pool[link].joints)
                 for last in dict.fromkeys(end.last for end in pool.values())]  # fmt: skip
         raise UlnaInputError(
@@ -182,14 +203,14 @@ def _step(joint: Element, path: Path) -> Step:
         return Step(name, t, None, element=joint)
     if kind not in TURNING:
         raise UlnaInputError(
-            f"{path}: joint '{name}' is of type '{kind}'; expected rotary (revolute, continuous) or fixed joints up to "
-            "the tip. Choose a tip before it with --tip-link, or make it fixed where it stands still."
+            f"{path}: joint '{name}' is of type '{kind}'; expected rotary (revolute, continuous) or fixed joints from "
+            "base to tip. Choose a tip before it with --tip-link, or a base behind it with --base-link."
         )
     mimic = joint.find("mimic")
     if mimic is not None:
         raise UlnaInputError(
             f"{path}: joint '{name}' mimics joint '{mimic.get('joint')}'; expected joints with encoders of their own "
-            "up to the tip. Choose a tip before it with --tip-link."
+            "from base to tip. Choose a tip before it with --tip-link."
         )
     axis = vector(joint.find("axis"), "xyz", "1 0 0", name, path)
     length = float(np.linalg.norm(axis))
@@ -202,17 +223,19 @@ def _step(joint: Element, path: Path) -> Step:
 
 
 def _limits(joint: Element, name: str, path: Path) -> tuple[float, float] | None:
-    """rad; None where there are none, or where nothing lies between them (0 and 0 is how many say "not known")."""
+    """rad; None where there are none, as also 0 and 0, or numbers that no joint reaches, are meant to say."""
     limit = joint.find("limit")
     if joint.get("type") != "revolute" or limit is None:
         return None
-    low, high = (_numbers(limit.get(key, "0"), 1, f"limit {key}", name, path)[0] for key in ("lower", "upper"))
+    low, high = (
+        _numbers(limit.get(key, "0"), 1, f"limit {key}", name, path, math.inf)[0] for key in ("lower", "upper")
+    )
     if low > high:
         raise UlnaInputError(
             f"{path}: joint '{name}', limit: got lower '{limit.get('lower', '0')}' and upper "
             f"'{limit.get('upper', '0')}'; expected the lower one first. Swap them."
         )
-    return (float(low), float(high)) if low < high else None
+    return (float(low), float(high)) if low < high and max(-low, high) <= _MOST else None
 
 
 def vector(element: Element | None, key: str, usual: str, joint: str, path: Path) -> F64:
@@ -221,9 +244,9 @@ def vector(element: Element | None, key: str, usual: str, joint: str, path: Path
     return _numbers(text, 3, key, joint, path)
 
 
-def _numbers(text: str, count: int, key: str, joint: str, path: Path) -> NDArray[np.float64]:
+def _numbers(text: str, count: int, key: str, joint: str, path: Path, most: float = _MOST) -> NDArray[np.float64]:
     values = [number_of(part) for part in text.split()]
-    if len(values) == count and all(value is not None and abs(value) <= _MOST for value in values):
+    if len(values) == count and all(value is not None and abs(value) <= most for value in values):
         return np.array(values, dtype=np.float64)
     number = "three numbers" if count == 3 else "a number"
     hint = f"This is xacro. {EXPAND}." if "$" in text else "Correct it."
