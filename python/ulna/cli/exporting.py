@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ulna.cli.options import ArmFile, Force
+from ulna.cli.options import ArmFile, Force, one_of
 from ulna.cli.running import guard
 
 app = typer.Typer(
@@ -70,6 +70,46 @@ def urdf(
         write_file(out, filled.content, force)
         output.say(f"{out}: {summary(filled, name)}")
         source.remarks.extend(f"{out}: {remark}" for remark in remarks(filled))
+    for remark in source.remarks:
+        output.say(f"warning: {remark}")
+
+
+@app.command("dh")
+@guard
+def dh(
+    arm: ArmFile,
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="CSV to write.", show_default=False)],
+    convention: Annotated[
+        str, typer.Option("--convention", help="dh (upper-joint, Ulna's own) or modified-dh (Craig).")
+    ] = "dh",
+    length_unit: Annotated[str, typer.Option("--length-unit", help="mm, m or in.")] = "mm",
+    angle_unit: Annotated[str, typer.Option("--angle-unit", help="rad or deg.")] = "rad",
+    force: Force = False,
+) -> None:
+    """Write an arm as a table of Denavit–Hartenberg parameters: a row for each joint, then one for each probe's tip.
+
+    turn = sign * encoder - theta0; an offset, as many controllers call it, is -theta0. The tips' rows are frames that
+    no encoder turns. Units stand in the names of the columns.
+
+    Example: [bold]ulna export dh out/result.json -o table.csv --convention modified-dh --angle-unit deg[/bold]
+    """
+    from ulna.cli import output
+    from ulna.export.dh import dh_table
+    from ulna.export.source import read_source
+    from ulna.files.output import refuse_inputs, write_file
+
+    one_of("--convention", convention, ("dh", "modified-dh"))
+    one_of("--length-unit", length_unit, ("mm", "m", "in"))
+    one_of("--angle-unit", angle_unit, ("rad", "deg"))
+    refuse_inputs([out], [arm])
+    source = read_source(arm, "a table")
+    choices: Any = {"convention": convention, "length": length_unit, "angle": angle_unit}
+    write_file(out, dh_table(source.arm, path=arm, **choices), force)
+    output.say(f"{out}: '{source.arm.name}', {source.arm.n} joints, {_listed(source.arm.probes)}.")
+    for name, probe in source.arm.probes.items():
+        x, y, z = (f"{value:.4f}" for value in probe.tip_mm)
+        where = f"x = {x}, y = {y}, z = {z} mm in the frame that turns with joint {source.arm.n}"
+        output.say(f"Probe '{name}' is at {where}: a controller's tool.")
     for remark in source.remarks:
         output.say(f"warning: {remark}")
 

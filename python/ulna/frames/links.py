@@ -21,6 +21,9 @@ PARALLEL = 0.05
 #: axes closer to parallel than this have no common normal, closer to perpendicular no crossing of a plane
 _NONE = 1e-6
 
+#: axes nearer to each other than this, mm, where they meet the plane have no direction from one to the other
+_NO_LINK_MM = 1e-11
+
 #: what rounding leaves where a zero is meant; it would make an arm file hard to read
 _NO_ANGLE_RAD, _NO_LENGTH_MM = 1e-14, 1e-12
 
@@ -45,7 +48,10 @@ def link_between(p_mm: F64, w: F64, like: Joint | None = None) -> Joint:
     if parallel:
         p_mm = p_mm - w * (p_mm[2] / w[2])  # where the next axis meets the plane z = 0
         a_mm = float(np.hypot(p_mm[0], p_mm[1]))
-        turn_rad = math.atan2(p_mm[1], p_mm[0]) if a_mm > 1e-9 else near_rad
+        if a_mm < _NO_LINK_MM:
+            a_mm, turn_rad = 0.0, near_rad
+        else:
+            turn_rad = math.atan2(p_mm[1], p_mm[0])
         if _other_way(turn_rad, near_rad):
             turn_rad, a_mm = turn_rad - math.copysign(math.pi, turn_rad), -a_mm
         v = turn("z", -turn_rad) @ w

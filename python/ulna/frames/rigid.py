@@ -69,5 +69,6 @@ def apart(one_rad: float, other_rad: float) -> float:
 def smallest_turn(w: F64) -> F64:
     """(3, 3) the smallest rotation that brings z to the unit vector w, which does not point along -z."""
     x, y, z = w
-    cross = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])  # [z × w]×
-    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + z))
+    # (1 - cos) / sin² about z × w; the other form where 1 + z would keep few digits, and R no rotation
+    k = 1.0 / (1.0 + z) if z > 0 else (1.0 - z) / (x * x + y * y)
+    return np.array([[1.0 - k * x * x, -k * x * y, x], [-k * x * y, 1.0 - k * y * y, y], [-x, -y, z]])
