@@ -15,7 +15,8 @@ app = typer.Typer(
     name="import",
     help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
     "Any other layout: write a CSV with a header q1,…,qn and, where there is a choice, probe, artefact, placement and "
-    "feature; describe the arm in an arm file (import urdf makes one of a robot's drawing); name both in a study.",
+    "feature; describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a table); name "
+    "both in a study.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
