@@ -171,6 +171,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no number": ("30,40", "30,x", ("row 2 (line 3 of the file), column 'd'", "'x'", "a number")),
     "an empty cell": ("30,40", "30,", ("row 2", "column 'd'", "the cell is empty")),
     "degrees": ("-1.5", "-90", ("row 2", "column 'alpha'", "got -90", "Are these degrees?")),
+    "a unit too large": ("30,40", "30,4e7", ("row 2", "column 'd'", "got 4e+07", "a kilometre", "right unit")),
     "a sign": ("elbow,-1", "elbow,2", ("row 2", "column 'sign'", "got 2", "1 or -1")),
     "order": ("2,elbow", "3,elbow", ("row 2", "column 'joint'", "got 3, expected 2", "Sort the rows")),
     "one joint": ("2,elbow,-1,0.2,-1.5,30,40\n", "", ("there are 1 joints", "at least two")),
@@ -215,6 +216,7 @@ def test_units_are_never_guessed_and_beta_has_its_place(tmp_path: Path) -> None:
     says(error(GOOD, "dh", "mm", "rad", tip=(0.0, 0.0, 1.0)), "got --tip", "rows for tips (ball)", "Leave out --tip")
     bare = "theta0_rad,alpha_rad,a_mm,d_m\n0,1,2,3\n0,1,2,3\n"
     says(error(bare, tip=(0.0, 0.0, 1.0)), "different units", "--tip", "Change one")
+    assert "three finite numbers" in error(bare.replace("d_m", "d_mm"), tip=(0.0, math.nan, 1.0))
     both = "theta0_rad,alpha_rad,a_mm,d_mm,beta_rad\n0,1,2,3,0.1\n0,1,2,3,0\n"
     says(error(both), "row 1 (line 2 of the file)", "a beta and a d", "Make one of them 0")
     tilted = both.replace("2,3,0.1", "2,0,0.1")

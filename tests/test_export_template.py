@@ -116,6 +116,27 @@ def test_an_equal_set_of_parameters_gives_the_same_file(tmp_path: Path) -> None:
     assert np.abs(numbers[0] - numbers[1]).max() < 1e-9
 
 
+def test_an_axis_told_the_other_way_round_is_the_same_axis(tmp_path: Path) -> None:
+    aside = (0.0, 1.0, 0.0)
+    made = [Made((0.0, 0.0, 0.3), (0.0, 0.0, 0.2), (0.0, 0.0, 1.0)), Made((0.1, 0.05, 0.2), (0.3, 0.1, 0.0), aside)]
+    made += [Made((0.2, 0.0, 0.1), (0.1, 0.9, 0.0), aside), Made((0.1, 0.0, 0.0), (1.0, 0.4, 0.3), aside)]
+    path = write(tmp_path, urdf(made))
+    arm = arm_from_chain(read_chain(path))[0]
+    for k in (1, 2):
+        before, joint = arm.joints[k - 1], arm.joints[k]
+        # z against the drawn axis, and the encoder against z: Rz(-t) = Rx(π) Rz(t) Rx(π)
+        joints = list(arm.joints)
+        joints[k - 1] = replace(before, alpha_rad=before.alpha_rad + math.pi)
+        joints[k] = replace(
+            joint, sign=-1, theta0_rad=-joint.theta0_rad, alpha_rad=joint.alpha_rad + math.pi, d_mm=-joint.d_mm
+        )
+        other = replace(arm, joints=tuple(joints))
+        assert np.abs(other.tip(poses(4)) - arm.tip(poses(4))).max() < 1e-9
+        filled = check(path, other, "tip")
+        assert not any(change.reversed_axis for change in filled.changes)
+        assert max((change.shift_mm for change in filled.changes), default=0.0) < 1e-9
+
+
 def test_a_zero_offset_turns_its_own_joint_only(tmp_path: Path) -> None:
     made = [Made((0.0, 0.0, 0.3), (0.0, 0.0, 0.2), (0.0, 0.0, 1.0))]
     made += [Made((0.2, 0.0, 0.1), (0.1 * k, 1.0, 0.0), (0.0, 1.0, 0.0)) for k in range(3)]
@@ -182,6 +203,20 @@ def test_numbers_that_do_not_change_stay_as_they_are_written(tmp_path: Path) -> 
     assert [change.joint for change in filled.changes] == ["t"]
     assert b"xyz='2e-1 1.00e-1 0.0'" in filled.content
     assert b'<origin xyz="' in filled.content
+
+
+def test_angles_are_told_as_they_were_before(tmp_path: Path) -> None:
+    told = (3.0, 3.1, -3.05)  # nearly nothing, the long way round
+    made = [Made((0.0, 0.0, 0.1), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)), Made((0.2, 0.0, 0.1), told, (0.0, 1.0, 0.0))]
+    path = write(tmp_path, urdf([*made, Made((0.2, 0.0, 0.1), (0.1, 7.0, 0.3), (1.0, 0.0, 0.0))]))
+    arm, _ = arm_from_chain(read_chain(path))
+    check(path, moved(arm), "tip")
+    for joint, rpy in zip(
+        drawn_joints(path.with_name("filled.urdf"), "tip")[1:3], (told, (0.1, 7.0, 0.3)), strict=True
+    ):
+        now = [float(part) for part in joint.find("origin").get("rpy").split()]
+        assert now == pytest.approx(rpy, abs=0.05)
+        assert now != list(rpy)
 
 
 def test_other_links_stay_where_they_were_on_their_bodies(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -105,10 +106,18 @@ def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
     says(
         remark,
         "result-1.json: the readings did not determine joint.1.d, probe.straight.x, probe.straight.y, probe.straight.z",
-        "where the calibration started",
+        "what they left open of them is as the calibration started",
         "'identifiability'",
     )
     assert read_source(FOSSILS / "arm-1.toml", "a URDF").remarks == []
+    document = json.loads((FOSSILS / "result-1.json").read_text())
+    document["fit"] |= {"converged": False, "termination": "poor-minimum"}
+    document["parameters"] = [row for row in document["parameters"] if row["name"] != "joint.1.d"]
+    (tmp_path / "result.json").write_text(json.dumps(document))
+    failed, _ = read_source(tmp_path / "result.json", "a URDF").remarks
+    says(failed, "result.json: the fit did not converge (poor-minimum)", "do not use these numbers")
+    (tmp_path / "result.json").write_text(json.dumps(document | {"fit": 1, "parameters": [2, {"status": 3}]}))
+    assert read_source(tmp_path / "result.json", "a URDF").remarks == []
 
 
 def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -148,6 +148,6 @@ def test_the_file_says_where_the_base_frame_is(tmp_path: Path) -> None:
     )
     assert "xyz = 0, 200, 300 mm, turned by rpy = 0, 1.57079633, 0 rad" in written
     assert Arm.load(tmp_path / "arm.toml") == found.arm
-    straight = urdf([Made(HERE, STRAIGHT, UP), Made(OUT, STRAIGHT, ASIDE)], base="a&#9;b\u0085c = 5")
+    straight = urdf([Made(HERE, STRAIGHT, UP), Made(OUT, STRAIGHT, ASIDE)], base="a&#10;b = 5 &#x7f;")
     assert import_urdf(write(tmp_path, straight), tmp_path / "b.toml").remark.startswith("The arm's base frame is that")
     assert tomllib.loads((tmp_path / "b.toml").read_text())["name"] == "made"

@@ -24,5 +24,8 @@ def one_of(option: str, value: str, known: tuple[str, ...]) -> None:
     from ulna.errors import UlnaInputError, nearest
 
     if value not in known:
-        listed = f"{', '.join(known[:-1])} or {known[-1]}"
-        raise UlnaInputError(f"option {option}: got '{value}', expected {listed}.{nearest(value, known)}")
+        hint = nearest(value, known)
+        raise UlnaInputError(
+            f"option {option}: got '{value}', expected {', '.join(known[:-1])} or {known[-1]}."
+            + (hint if "Did you mean" in hint else " Correct it.")
+        )

@@ -29,30 +29,37 @@ def read_source(path: Path, what: str) -> Source:
                 f"{path}: key 'joint.{k}.sign': got {joint.sign}; expected 1 or -1 of an arm that is written as {what}."
                 " Calibrate first, and export the result."
             )
-    remarks = []
-    open_names = not_determined(path)
-    if open_names:
-        remarks.append(
-            f"{path}: the readings did not determine {', '.join(open_names)}; what is written of "
-            f"{'them is' if len(open_names) > 1 else 'it is'} where the calibration started. See 'identifiability' in "
-            "the result."
-        )
+    remarks = remarks_of_result(path)
     left_out = not_carried(arm)
     if left_out:
         remarks.append(remark_not_carried(left_out, what, path))
     return Source(arm, remarks)
 
 
-def not_determined(path: Path) -> list[str]:
-    """Names of the parameters that a result.json says were not determined; none of an arm file."""
+def remarks_of_result(path: Path) -> list[str]:
+    """Of a result.json: that its fit failed, and which parameters its readings did not determine. None of an arm file.
+
+    Whatever is damaged in these parts says nothing; the arm itself was checked when it was read.
+    """
     if path.suffix.lower() != ".json":
         return []
-    rows = read_json(path, "a result.json")[0].get("parameters")
-    return [
+    document = read_json(path, "a result.json")[0]
+    remarks = []
+    fit, rows = document.get("fit"), document.get("parameters")
+    if isinstance(fit, dict) and fit.get("converged") is False:
+        remarks.append(f"{path}: the fit did not converge ({fit.get('termination')}): do not use these numbers.")
+    lost = [
         str(row.get("name"))
         for row in (rows if isinstance(rows, list) else [])
         if isinstance(row, dict) and row.get("status") == "not-determined"
     ]
+    if lost:
+        whose = "them" if len(lost) > 1 else "it"
+        remarks.append(
+            f"{path}: the readings did not determine {', '.join(lost)}; what they left open of {whose} is "
+            "as the calibration started. 'identifiability' in the result says why, and what would help."
+        )
+    return remarks
 
 
 def not_carried(arm: Arm) -> list[str]:

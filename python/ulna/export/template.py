@@ -63,8 +63,9 @@ def summary(filled: Filled, probe: str) -> str:
     if not filled.changes:
         return f"no origin changed, link '{filled.tip_link}' is where probe '{probe}' ends: the arm is as drawn."
     shift, angle = (max(filled.changes, key=lambda c: getattr(c, key)) for key in ("shift_mm", "turn_rad"))
+    count = f"{len(filled.changes)} origin{'s' * (len(filled.changes) > 1)}"
     return (
-        f"{len(filled.changes)} origins changed, at most by {shift.shift_mm:.3g} mm (joint '{shift.joint}') and "
+        f"{count} changed, at most by {shift.shift_mm:.3g} mm (joint '{shift.joint}') and "
         f"{angle.turn_rad:.3g} rad (joint '{angle.joint}'); link '{filled.tip_link}' ends in probe '{probe}'."
     )
 
@@ -82,7 +83,7 @@ def remarks(filled: Filled) -> list[str]:
         found.append(
             f"a calibration rarely changes an origin by more than {FAR_MM:g} mm or {FAR_RAD:g} rad, as here those of "
             f"{', '.join(far)}. Is this the arm's own URDF, does its base stand at link '{filled.base_link}' as "
-            "there, and is the tip that of the probe?"
+            "there, is the tip that of the probe? If so, the readings may say little of them: ulna identify tells."
         )
     return found
 

@@ -36,15 +36,16 @@ def urdf_text(arm: Arm) -> str:
     if any(joint.limits_rad for joint in arm.joints):
         parts.append(NO_MOTOR)
     parts += [f"  <link name={quoteattr(name)}/>\n" for name in links]
-    for k, (joint, t) in enumerate(zip(arm.joints, joint_origins(arm.joints), strict=True)):
+    *origins, t_end = joint_origins(arm.joints)
+    for k, (joint, t) in enumerate(zip(arm.joints, origins, strict=True)):
         parts.append(_joint(joints[k], links[k], links[k + 1], t, joint))
     for name, link, probe in zip(fixed, links[arm.n + 1 :], arm.probes.values(), strict=True):
-        parts.append(_joint(name, links[arm.n], link, pose(np.eye(3), probe.tip_mm), None))
+        parts.append(_joint(name, links[arm.n], link, t_end @ pose(np.eye(3), probe.tip_mm), None))
     return "".join([*parts, "</robot>\n"])
 
 
 def joint_origins(joints: Iterable[Joint]) -> list[F64]:
-    """(4, 4) each, mm: every joint's frame in that of the joint before it, at encoder angle 0.
+    """(4, 4) each, mm: every joint's frame in that of the joint before it, at encoder angle 0; then that of the tips.
 
     `Tx(a) · Rx(alpha) · Ry(beta)` of the link before, then `Rz(-theta0) · Tz(d)` of the joint's own link: a turn about
     the joint's axis may as well come before the encoder's.
@@ -55,7 +56,7 @@ def joint_origins(joints: Iterable[Joint]) -> list[F64]:
         own = pose(turn("z", -joint.theta0_rad), np.array([0.0, 0.0, joint.d_mm]))
         origins.append(before @ own)
         before = inverse(own) @ link_at_zero(joint)
-    return origins
+    return [*origins, before]
 
 
 def _joint(name: str, parent: str, child: str, t: F64, joint: Joint | None) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 F64 = NDArray[np.float64]
 
 #: below this cosine of the pitch, roll and yaw turn about the same axis up to rounding
-_GIMBAL = 1e-12
+_GIMBAL = 1e-15
 
 
 def turn(axis: str, angle_rad: float) -> F64:

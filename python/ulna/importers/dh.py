@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -84,6 +85,8 @@ def _tip_frames(table: Table, convention: Convention, tip: tuple[float, float, f
     if table.tips:
         at_end = link_at_zero if convention == "dh" else _modified_link
         return {name: Probe(*at_end(row)[:3, 3].tolist()) for name, row in table.tips.items()}
+    if tip is not None and not all(math.isfinite(value) for value in tip):
+        raise UlnaInputError(f"{table.path}: --tip: got {tip}; expected three finite numbers. Correct it.")
     if tip is not None and table.mm is None:
         raise UlnaInputError(
             f"{table.path}: the columns a and d have different units; expected one, in which --tip is. Change one."

@@ -27,6 +27,9 @@ WHAT = "a table of Denavit–Hartenberg parameters (CSV with a header theta0 or 
 ANGLES, LENGTHS = ("theta0", "offset", "alpha", "beta"), ("a", "d")
 LABELS = ("joint", "name")
 
+#: no arm is longer; a wrong unit makes it so
+MOST_MM = 1e6
+
 #: what stands in the column `joint` of a row that is no joint
 TIP = "tip"
 
@@ -141,6 +144,12 @@ def _row(header: Header, k: int, cells: dict[str, float], columns: list[_Column]
             raise UlnaInputError(
                 f"{header.path}: {header.where(k)}, column '{column.name}': got {cells[column.name]:g}, more than two "
                 "turns; expected angles within ±4π rad (720°). Are these degrees? State the right unit."
+            )
+    for column in columns:
+        if column.parameter in LENGTHS and not abs(values[column.parameter]) <= MOST_MM:
+            raise UlnaInputError(
+                f"{header.path}: {header.where(k)}, column '{column.name}': got {cells[column.name]:g}; expected "
+                "lengths of at most a kilometre. State the right unit, or correct the cell."
             )
     sign = cells.get("sign", 1.0)
     if sign not in (1.0, -1.0):
