@@ -13,12 +13,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.oracle import arms
 from tests.oracle.craig import PANDA, PANDA_FLANGE_MM, craig_tips
+from tests.oracle.drawn import drawn_tips
 from tests.small_study import says
 from tests.test_export_urdf import _arm as of_oracle
 from tests.urdf_texts import poses
 
 from ulna import Arm, Joint, Probe, UlnaInputError
 from ulna.export.dh import dh_table
+from ulna.export.urdf import urdf_text
+from ulna.frames.links import link_at_zero, moved
 from ulna.importers.dh import import_dh
 from ulna.importers.robots import panda, ur10
 
@@ -72,6 +75,20 @@ def test_any_arm(
     assert np.abs(again.tip(poses(arm.n, 5)) - arm.tip(poses(arm.n, 5))).max() < 1e-9
     for joint in again.joints[:-1]:
         assert (joint.model == "hayati") == (abs(math.sin(joint.alpha_rad)) < 0.05)
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_a_last_joint_with_a_link_of_its_own(tmp_path: Path, convention: str) -> None:
+    # as redundant models of the literature have it: the probe stands at the end of that link
+    first, last = Joint(0.3, 1.2, 200.0, 50.0), Joint(0.4, -0.7, 30.0, 20.0, sign=-1)
+    full = Arm("full", (first, last), {"p": Probe(10.0, 20.0, 30.0)})
+    bare = Arm("bare", (first, Joint(sign=-1)), moved(full.probes, link_at_zero(last)))
+    q_rad = poses(2)
+    again = _read(_written(tmp_path, full, convention), convention)
+    assert np.abs(again.tip(q_rad) - bare.tip(q_rad)).max() < 1e-9
+    path = tmp_path / "full.urdf"
+    path.write_text(urdf_text(full))
+    assert np.abs(drawn_tips(path, "p", q_rad) - bare.tip(q_rad)).max() < 1e-9
 
 
 def _cells(path: Path) -> list[list[str]]:

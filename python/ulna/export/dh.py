@@ -11,9 +11,13 @@ import io
 import math
 from pathlib import Path
 
+import numpy as np
+
 from ulna.errors import UlnaInputError
 from ulna.files.units import MM_PER, RAD_PER, AngleUnit, LengthUnit
+from ulna.frames.links import moved
 from ulna.frames.modified import Convention, to_modified
+from ulna.frames.rigid import pose, turn
 from ulna.model import Arm, Joint, Probe
 
 #: what stands in the column `joint` of a row that is no joint
@@ -33,10 +37,13 @@ def dh_table(arm: Arm, convention: Convention, path: Path, length: LengthUnit = 
             "table has no column for; expected joints without beta. Export with --convention dh, or calibrate with "
             f'hold = ["joint.*.beta"] from an arm in which it is 0.'
         )
-    joints = list(arm.joints) if convention == "dh" else to_modified(arm.joints)
-    tip_row = _tip if convention == "dh" else _modified_tip
+    joints, probes, tip_row = list(arm.joints), arm.probes, _tip
+    if convention == "modified-dh":
+        last = arm.joints[-1]  # what it may have of a link stands behind the last row
+        after = pose(turn("x", last.alpha_rad), np.array([last.a_mm, 0.0, 0.0]))
+        joints, probes, tip_row = to_modified(arm.joints), moved(arm.probes, after), _modified_tip
     named = [(str(k), joint.name or f"joint {k}", joint) for k, joint in enumerate(joints, start=1)]
-    named += [(TIP, name, tip_row(probe)) for name, probe in arm.probes.items()]
+    named += [(TIP, name, tip_row(probe)) for name, probe in probes.items()]
     columns = [f"theta0_{angle}", f"alpha_{angle}", f"a_{length}", f"d_{length}"]
     columns += [f"beta_{angle}"] * bool(tilted)
     stream = io.StringIO()

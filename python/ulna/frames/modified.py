@@ -42,7 +42,7 @@ def from_modified(
 
 
 def to_modified(joints: Sequence[Joint]) -> list[Joint]:
-    """The rows of a modified table, alpha and a before each joint. The last one's theta0 and d are 0; tips stay.
+    """The rows of a modified table, alpha and a before each joint. Tips stay in the last joint's frame.
 
     A Hayati joint with a beta has no place in such a table: ValueError. One without is a DH joint with d = 0.
     """
