@@ -28,7 +28,20 @@ def test_unknown_command_and_option_name_the_nearest() -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["calibrate", "identify", "evaluate", "measure", "cross-validate", "reproduce", "import mukca"]
+    "command",
+    [
+        "calibrate",
+        "identify",
+        "evaluate",
+        "measure",
+        "cross-validate",
+        "reproduce",
+        "import mukca",
+        "import urdf",
+        "import dh",
+        "export urdf",
+        "export dh",
+    ],
 )
 def test_each_help_has_an_example(command: str) -> None:
     done = run(*command.split(), "--help")

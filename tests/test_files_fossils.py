@@ -37,6 +37,17 @@ def test_arm_1() -> None:
     assert arm.probes["straight 2"].tip_mm == pytest.approx(np.array([0.001, -0.002, 9.4]) * 25.4)
 
 
+def test_arm_1_in_the_modified_form() -> None:
+    arm = Arm.load(FOSSILS / "arm-1-modified.toml")
+    first, second, last = arm.joints
+    assert (first.theta0_rad, first.alpha_rad) == pytest.approx((math.radians(12.5), -math.pi / 2))
+    assert (first.a_mm, first.d_mm, second.a_mm, second.d_mm) == pytest.approx((82.5, 333.0, -82.5, 0.0))
+    assert (second.theta0_rad, second.alpha_rad) == pytest.approx((math.radians(-3.25), math.pi / 2))
+    assert (second.sign, last.theta0_rad, last.d_mm) == (-1, 0.0, 0.0)
+    turned = (40 * math.cos(math.radians(30)), -40 * math.sin(math.radians(30)), 107.0 + 103.4)
+    assert arm.probes["straight"].tip_mm == pytest.approx(np.array(turned))
+
+
 @pytest.fixture(scope="module")
 def study() -> Study:
     return Study.load(FOSSILS / "study-1.toml")

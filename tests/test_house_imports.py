@@ -11,6 +11,7 @@ PYTHON_LAYERS = [
     {"_core"},
     {"errors", "cores"},
     {"model"},
+    {"frames"},
     {"study"},
     {"files"},
     {
@@ -27,7 +28,9 @@ PYTHON_LAYERS = [
         "evaluate",
         "measure",
         "cross_validate",
+        "urdf",
         "importers",
+        "export",
         "reproduce",
     },
     {"report"},

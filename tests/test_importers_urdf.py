@@ -1,50 +1,49 @@
-"""A drawing as an arm is the same map, whatever its axes do."""
+"""A robot's description as an arm is the same map, in the same frame, whatever its axes do."""
 
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
-from numpy.typing import NDArray
+from tests.oracle.drawn import drawn_tips
+from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
 
-from ulna import UlnaInputError
+from ulna import Arm
 from ulna.importers.robots import panda, ur10
-from ulna.importers.urdf import Step, arm_from_chain, chain_tip, read_chain, turn
+from ulna.importers.urdf import import_urdf
+from ulna.urdf.arm import arm_from_chain
+from ulna.urdf.chain import read_chain
 
 DRAWINGS = Path(__file__).parents[2] / "shared" / "data" / "mukca" / "nominal_urdf"
 needs_drawings = pytest.mark.skipif(not DRAWINGS.is_dir(), reason="the drawings of ../shared/data are not there")
 
 
-def _poses(n: int, count: int = 200) -> NDArray[np.float64]:
-    return np.random.default_rng(n).uniform(-3, 3, (count, n))
-
-
 @needs_drawings
 @pytest.mark.shared_data
 @pytest.mark.parametrize(("name", "joints", "hayati"), [("panda", 7, []), ("iiwa14", 7, []), ("gen3lite", 6, [2])])
-def test_an_arm_from_a_drawing_is_the_drawn_chain(name: str, joints: int, hayati: list[int]) -> None:
+def test_an_arm_from_a_real_description_is_the_drawn_chain(name: str, joints: int, hayati: list[int]) -> None:
     path = DRAWINGS / f"{name}.urdf"
-    _, steps = read_chain(path)
-    arm = arm_from_chain(name, steps, path)
+    arm, t_root_base = arm_from_chain(read_chain(path))
     assert arm.n == joints
     assert [k for k, joint in enumerate(arm.joints, start=1) if joint.model == "hayati"] == hayati
-    q_rad = _poses(joints)
-    assert np.abs(arm.tip(q_rad) - chain_tip(steps, q_rad)).max() < 1e-9
+    q_rad = poses(joints)
+    assert np.abs(arm.tip(q_rad) - drawn_tips(path, "ball_link", q_rad)).max() < 1e-9
+    assert np.array_equal(t_root_base, np.eye(4))
 
 
 @needs_drawings
 @pytest.mark.shared_data
-def test_the_panda_of_the_data_sheet_is_the_panda_of_the_drawing() -> None:
-    _, steps = read_chain(DRAWINGS / "panda.urdf", "panda_hand_tcp")
+def test_the_panda_of_the_data_sheet_is_the_panda_of_the_description() -> None:
+    path = DRAWINGS / "panda.urdf"
     arm = panda()
-    q_rad = _poses(7)
+    q_rad = poses(7)
     hand = arm.with_parameters([*arm.parameters[:-1], 107.0 + 103.4])
-    assert np.abs(hand.tip(q_rad) - chain_tip(steps, q_rad)).max() < 1e-9
-    assert [joint.limits_rad for joint in arm.joints] == [step.limits_rad for step in steps if step.axis is not None]
+    assert np.abs(hand.tip(q_rad) - drawn_tips(path, "panda_hand_tcp", q_rad)).max() < 1e-9
+    assert [joint.limits_rad for joint in arm.joints] == [step.limits_rad for step in read_chain(path).turning]
 
 
 def test_the_ur10_stands_where_its_data_sheet_says() -> None:
@@ -58,74 +57,97 @@ def test_the_ur10_stands_where_its_data_sheet_says() -> None:
     assert a == pytest.approx(b, abs=1e-9)
 
 
-angle = st.floats(-math.pi, math.pi)
-offset = st.floats(-500, 500)
-step = st.tuples(st.tuples(angle, angle, angle), st.tuples(offset, offset, offset), st.sampled_from("xyz"))
+@given(chains)
+def test_any_chain(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -> None:
+    path = write(tmp_path_factory.mktemp("urdf"), urdf(made))
+    arm, t_root_base = arm_from_chain(read_chain(path))
+    q_rad = poses(arm.n, 5)
+    assert np.abs(tips_in_root(arm, t_root_base, q_rad) - drawn_tips(path, "tip", q_rad)).max() < 1e-9
+    assert np.abs(t_root_base[:3, :3].T @ t_root_base[:3, :3] - np.eye(3)).max() < 1e-14
 
 
-@given(st.lists(step, min_size=2, max_size=7))
-def test_any_chain(chain: list[tuple[tuple[float, ...], tuple[float, ...], str]]) -> None:
-    steps = []
-    for k, ((roll, pitch, yaw), xyz, axis) in enumerate(chain):
-        t = np.eye(4)
-        t[:3, :3] = turn("z", yaw) @ turn("y", pitch) @ turn("x", roll)
-        t[:3, 3] = xyz
-        steps.append(Step(f"j{k}", np.eye(4) if k == 0 else t, np.eye(3)["xyz".index("z" if k == 0 else axis)]))
-    tool = np.eye(4)
-    tool[:3, 3] = (10.0, 20.0, 30.0)
-    steps.append(Step("tool", tool, None))
-    arm = arm_from_chain("any", steps, Path("any.urdf"))
-    q_rad = _poses(len(chain), 5)
-    # Common normals of nearly parallel axes are far away: what is lost to rounding grows with them.
-    farthest_mm = max(1000.0, *(abs(joint.d_mm) for joint in arm.joints))
-    assert np.abs(arm.tip(q_rad) - chain_tip(steps, q_rad)).max() < 1e-12 * farthest_mm
+UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)
+S, C = math.sin(0.02), math.cos(0.02)
+HERE, STRAIGHT, OUT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.3, 0.0, 0.0)
 
 
-URDF = """<?xml version="1.0"?>
-<robot name="two">
-  <joint name="j1" type="revolute">
-    <parent link="base"/><child link="l1"/><origin xyz="0 0 0.1"/><axis xyz="0 0 1"/>
-  </joint>
-  <joint name="j2" type="continuous">
-    <parent link="l1"/><child link="l2"/><origin xyz="0.2 0 0"/><axis xyz="0 1 0"/>
-  </joint>
-  <joint name="t" type="fixed"><parent link="l2"/><child link="ball_link"/><origin xyz="0 0 0.3"/></joint>
-</robot>
-"""
+def _arm(tmp_path: Path, first: Made, second_axis: tuple[float, float, float] = ASIDE) -> tuple[Arm, np.ndarray]:
+    return arm_from_chain(read_chain(write(tmp_path, urdf([first, Made(OUT, STRAIGHT, second_axis)]))))
 
 
-def test_a_drawing_in_metres_becomes_mm(tmp_path: Path) -> None:
-    path = tmp_path / "two.urdf"
-    path.write_text(URDF)
-    name, steps = read_chain(path)
-    arm = arm_from_chain(name, steps, path)
-    assert (arm.name, arm.n) == ("two", 2)
-    assert arm.tip([0.0, 0.0]) == pytest.approx([200, 0, 400], abs=1e-9)
-    assert arm.tip([math.pi / 2, math.pi / 2]) == pytest.approx([0, 500, 100], abs=1e-9)
+@pytest.mark.parametrize(
+    ("first", "sign", "shift_mm", "turn_rad"),
+    [
+        (Made((0.0, 0.0, 0.2), STRAIGHT, UP), 1, HERE, 0.0),
+        (Made((0.0, 0.0, 0.2), STRAIGHT, DOWN), -1, HERE, 0.0),  # clockwise: the frame stays, the sign tells
+        (Made((0.0, 0.0, 0.2), (math.pi, 0.0, 0.0), UP), -1, HERE, 0.0),  # the same, said with the frame
+        (Made((0.5, 0.4, 0.8), (0.0, 0.0, 0.7), UP), 1, (500.0, 400.0, 0.0), 0.0),  # on a table: no height is lost
+        (Made((0.1, 0.2, 0.3), STRAIGHT, (1.0, 0.0, 0.0)), 1, (0.0, 200.0, 300.0), math.pi / 2),  # on a wall
+        (
+            Made((0.0, 0.0, 0.2), (0.02, 0.0, 0.0), DOWN),
+            -1,
+            (0.0, 100 * math.sin(0.04), 200 * math.sin(0.02) ** 2),
+            0.02,
+        ),
+        (Made(HERE, (2.0, 0.0, 0.0), UP), 1, HERE, 2.0),
+    ],
+)
+def test_where_the_base_frame_stands(
+    tmp_path: Path, first: Made, sign: int, shift_mm: tuple[float, ...], turn_rad: float
+) -> None:
+    arm, t = _arm(tmp_path, first)
+    assert arm.joints[0].sign == sign
+    assert t[:3, 3] == pytest.approx(shift_mm, abs=1e-9)
+    assert math.acos(min(1.0, (np.trace(t[:3, :3]) - 1) / 2)) == pytest.approx(turn_rad, abs=1e-8)
 
 
-BAD: dict[str, tuple[str, str, str]] = {
-    "no XML": ("<robot", "<robot <", "not valid XML"),
-    "no robot": ("robot", "sdf", "outermost element is <sdf>"),
-    "no child": ('<child link="l1"/>', "", "joint 'j1' names no child link"),
-    "sliding": ("continuous", "prismatic", "joint 'j2' is of type 'prismatic'"),
-    "one joint": ("continuous", "fixed", "there are 1 rotary joints"),
-    "two numbers": ('"0.2 0 0"', '"0.2 0"', r"joint 'j2', xyz: got '0.2 0', expected three numbers"),
-}
+def test_an_axis_the_other_way_is_geometry(tmp_path: Path) -> None:
+    first = Made((0.0, 0.0, 0.2), STRAIGHT, UP)
+    there, back = (_arm(tmp_path, first, (0.0, way, 0.0))[0] for way in (1.0, -1.0))
+    assert [joint.sign for joint in (*there.joints, *back.joints)] == [1] * 4
+    assert there.joints[0].alpha_rad == pytest.approx(-back.joints[0].alpha_rad)
+    assert there.tip([0.4, 0.5]) == pytest.approx(back.tip([0.4, -0.5]), abs=1e-9)
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_what_a_drawing_is_told(tmp_path: Path, case: str) -> None:
-    old, new, message = BAD[case]
-    path = tmp_path / "two.urdf"
-    path.write_text(URDF.replace(old, new))
-    with pytest.raises(UlnaInputError, match=message) as caught:
-        arm_from_chain("two", read_chain(path)[1], path)
-    assert str(caught.value).startswith(str(path))
+@pytest.mark.parametrize(
+    ("axis", "rpy", "model"),
+    [
+        (UP, STRAIGHT, "hayati"),
+        (DOWN, STRAIGHT, "hayati"),
+        (UP, (0.049, 0.0, 0.0), "hayati"),
+        (UP, (0.051, 0.0, 0.0), "dh"),
+        (UP, (math.pi - 0.049, 0.0, 0.0), "hayati"),
+        (ASIDE, STRAIGHT, "dh"),
+    ],
+)
+def test_parallel_axes_are_hayati_joints(
+    tmp_path: Path, axis: tuple[float, float, float], rpy: tuple[float, float, float], model: str
+) -> None:
+    made = [Made(HERE, STRAIGHT, UP), Made(OUT, rpy, axis), Made((0.0, 0.3, 0.1), STRAIGHT, (1.0, 0.0, 0.0))]
+    arm, _ = arm_from_chain(read_chain(write(tmp_path, urdf(made))))
+    assert arm.joints[0].model == model
+    assert arm.joints[0].a_mm == pytest.approx(300, abs=1)
 
 
-def test_an_unknown_link(tmp_path: Path) -> None:
-    path = tmp_path / "two.urdf"
-    path.write_text(URDF)
-    with pytest.raises(UlnaInputError, match=r"no link 'bal_link' below a joint\. Did you mean 'ball_link'\?"):
-        read_chain(path, "bal_link")
+def test_rounding_does_not_choose_the_side_of_a_common_normal(tmp_path: Path) -> None:
+    # The normal of z and x is y, a quarter turn from zero offset either way: noise must not decide.
+    found = set()
+    for noise in (0.0, 1e-16, -1e-16):
+        made = [Made(HERE, STRAIGHT, UP), Made((0.2, 0.1, 0.0), (0.0, math.pi / 2, noise), UP)]
+        arm, _ = arm_from_chain(read_chain(write(tmp_path, urdf(made))))
+        found.add(round(arm.joints[0].theta0_rad, 9))
+    assert found == {round(-math.pi / 2, 9)}
+
+
+def test_the_file_says_where_the_base_frame_is(tmp_path: Path) -> None:
+    text = urdf([Made((0.1, 0.2, 0.3), STRAIGHT, (1.0, 0.0, 0.0)), Made(OUT, STRAIGHT, ASIDE)], base="wall\u00b7x")
+    found = import_urdf(write(tmp_path, text), tmp_path / "arm.toml")
+    written = (tmp_path / "arm.toml").read_text()
+    assert written.startswith(
+        "# Made of made.urdf, from link 'wall·x' to link 'tip'.\n# The arm's base frame stands on"
+    )
+    assert "xyz = 0, 200, 300 mm, turned by rpy = 0, 1.57079633, 0 rad" in written
+    assert Arm.load(tmp_path / "arm.toml") == found.arm
+    straight = urdf([Made(HERE, STRAIGHT, UP), Made(OUT, STRAIGHT, ASIDE)], base="a&#10;b = 5 &#x7f;")
+    assert import_urdf(write(tmp_path, straight), tmp_path / "b.toml").remark.startswith("The arm's base frame is that")
+    assert tomllib.loads((tmp_path / "b.toml").read_text())["name"] == "made"

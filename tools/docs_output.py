@@ -60,6 +60,11 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
                 raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
             text = tidy(done.stdout)
             found[name] = text if lines is None else first_lines(text, lines)
+        table = ["export", "dh", "out/demo/result.json", "-o", "out/table.csv"]
+        done = ulna([*table, "--convention", "modified-dh", "--angle-unit", "deg"], folder)
+        if done.returncode != 0:
+            raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
+        found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)

@@ -9,6 +9,7 @@ import typer
 from ulna.cli.calibrate import calibrate
 from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
+from ulna.cli.exporting import app as exporting
 from ulna.cli.identify import identify
 from ulna.cli.importing import app as importing
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
@@ -54,6 +55,7 @@ app.command("measure")(measure)
 app.command("cross-validate")(cross_validate)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
+app.add_typer(exporting, name="export")
 
 
 def main() -> None:

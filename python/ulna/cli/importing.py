@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ulna.cli.options import one_of
 from ulna.cli.running import guard
 
 app = typer.Typer(
     name="import",
     help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
     "Any other table is named in a study as it is (keys separator, decimal, sheet, dataset, columns of [[readings]]); "
-    "describe the arm in an arm file (import urdf makes one of a robot's drawing).",
+    "describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a table).",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -87,7 +88,10 @@ def urdf(
     file: Annotated[Path, typer.Argument(help="The robot's drawing (URDF).")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Arm file to write.")],
     tip_link: Annotated[
-        str | None, typer.Option(help="The link whose origin is the ball; default: the last one.")
+        str | None, typer.Option(help="The link whose origin is the ball; default: ball_link, or the last one.")
+    ] = None,
+    base_link: Annotated[
+        str | None, typer.Option(help="The link that the arm stands on; default: the root of the drawing.")
     ] = None,
     force: Force = False,
 ) -> None:
@@ -95,12 +99,57 @@ def urdf(
 
     Example: ulna import urdf iiwa14.urdf -o arm.toml --tip-link tool0
     """
-    from ulna.importers.urdf import arm_from_chain, read_chain
+    from ulna.importers.urdf import import_urdf
 
-    name, steps = read_chain(file, tip_link)
-    arm = arm_from_chain(name, steps, file)
-    arm.save(out, force=force)
-    _say(f"{out}: '{arm.name}', {arm.n} joints, probe 'ball'.")
+    found = import_urdf(file, out, tip_link, base_link, force)
+    _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe 'ball' at link '{found.chain.tip_link}'.")
+    _say(found.remark)
+
+
+@app.command("dh")
+@guard
+def dh(
+    file: Annotated[
+        Path, typer.Argument(help="The table (CSV): a row for each joint; columns theta0 or offset, alpha, a, d.")
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Arm file to write.")],
+    convention: Annotated[
+        str, typer.Option("--convention", help="dh (alpha and a after the joint) or modified-dh (before it; Craig).")
+    ],
+    length_unit: Annotated[
+        str | None, typer.Option("--length-unit", help="mm, m or in, where the columns' names do not say.")
+    ] = None,
+    angle_unit: Annotated[
+        str | None, typer.Option("--angle-unit", help="rad or deg, where the columns' names do not say.")
+    ] = None,
+    tip: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option("--tip", metavar="X Y Z", help="The probe's tip in the last row's frame; default: its origin."),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """A table of Denavit–Hartenberg parameters as an arm file, to be named in a study of your own readings.
+
+    turn = sign * encoder - theta0, so a column offset (turn = sign * encoder + offset) is -theta0. Units and convention
+    are never guessed.
+
+    Example: ulna import dh maker.csv -o arm.toml --convention modified-dh --length-unit mm --angle-unit deg
+    """
+    from ulna.importers.dh import import_dh
+
+    one_of("--convention", convention, ("dh", "modified-dh"))
+    for option, unit, known in (
+        ("--length-unit", length_unit, ("mm", "m", "in")),
+        ("--angle-unit", angle_unit, ("rad", "deg")),
+    ):
+        if unit is not None:
+            one_of(option, unit, known)
+    chosen: Any = convention
+    found = import_dh(file, out, chosen, length_unit, angle_unit, tip, force)
+    probes = ", ".join(f"'{name}'" for name in found.arm.probes)
+    _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe{'s' * (len(found.arm.probes) > 1)} {probes}.")
+    for remark in found.remarks:
+        _say(remark)
 
 
 def _say(line: str) -> None:

@@ -17,3 +17,15 @@ OutFolder = Annotated[
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]
+
+
+def one_of(option: str, value: str, known: tuple[str, ...]) -> None:
+    """Raises UlnaInputError for a word that an option does not know."""
+    from ulna.errors import UlnaInputError, nearest
+
+    if value not in known:
+        hint = nearest(value, known)
+        raise UlnaInputError(
+            f"option {option}: got '{value}', expected {', '.join(known[:-1])} or {known[-1]}."
+            + (hint if "Did you mean" in hint else " Correct it.")
+        )

@@ -12,9 +12,11 @@ from pydantic_core import PydanticCustomError
 from ulna.errors import UlnaInputError
 from ulna.files.covariance import covariance_of_result
 from ulna.files.models import Strict, fill
+from ulna.files.modified import check_modified
 from ulna.files.output import write_file
 from ulna.files.toml import check_format, read_json, read_toml
 from ulna.files.units import Units
+from ulna.frames.modified import Convention, from_modified
 from ulna.model import Arm, Joint, Probe
 
 WHAT = 'an arm file (TOML, format = "ulna-arm/1") or a result.json'
@@ -90,6 +92,8 @@ class ArmFile(Strict):
     format: Literal["ulna-arm/1"]
     name: str | None = None
     units: Units
+    convention: Convention = "dh"
+    """In the joint tables alpha and a stand after the joint ("dh") or before it ("modified-dh", Craig)."""
     joint: Annotated[list[JointTable], Field(min_length=2)]
     """One table per encoder, from the base to the probe."""
     probe: Annotated[dict[str, ProbeTable], Field(min_length=1)]
@@ -138,9 +142,14 @@ def arm_of_result(document: dict[str, Any], path: Path) -> Arm:
 
 
 def _arm(file: ArmFile, path: Path) -> Arm:
-    last = len(file.joint)
+    modified = file.convention == "modified-dh"
+    if modified:
+        check_modified(file.joint, path)
+    last = 0 if modified else len(file.joint)  # in the modified form the last joint has geometry as well
     joints = tuple(_joint(table, k, k == last, file.units, path) for k, table in enumerate(file.joint, start=1))
     probes = {name: _probe(name, table, file.units, path) for name, table in file.probe.items()}
+    if modified:
+        joints, probes, _ = from_modified(joints, probes)
     return Arm(file.name or path.stem, joints, probes)
 
 

@@ -17,8 +17,9 @@ from ulna.files.tables.text import TextTable
 from ulna.files.toml import read_bytes
 from ulna.importers.folder import write_study_folder
 from ulna.importers.robots import panda
-from ulna.importers.urdf import arm_from_chain, read_chain
 from ulna.model import Arm
+from ulna.urdf.arm import arm_from_chain
+from ulna.urdf.chain import read_chain
 
 SEATS = {"hole_0.csv": "A", "hole_1.csv": "B"}
 
@@ -111,5 +112,4 @@ def _arm(folder: Path, urdf: Path | None, tip_link: str | None) -> Arm:
         urdf = folder.resolve().parent / "nominal_urdf" / DRAWINGS[kind]
         if not urdf.exists():
             raise UlnaInputError(f"{urdf}: no such file; expected the drawing of {folder.name}. Give it with --urdf.")
-    name, steps = read_chain(urdf, tip_link)
-    return arm_from_chain(name, steps, urdf)
+    return arm_from_chain(read_chain(urdf, tip_link))[0]  # sockets anywhere: the base frame does not matter

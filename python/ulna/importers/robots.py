@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ulna.frames.modified import from_modified
 from ulna.model import Arm, Joint, Probe
 
 _QUARTER = math.pi / 2
@@ -12,13 +13,11 @@ _QUARTER = math.pi / 2
 def panda() -> Arm:
     """Franka Emika Panda, seven axes, with a ball on the axis of the hand.
 
-    The maker gives modified Denavit–Hartenberg parameters (Craig): a_{i-1} and alpha_{i-1} stand before joint i. In the
-    upper-joint form the same numbers stand after joint i-1, which moves them up by one joint; what stands after joint 7
-    (the flange, 107 mm) belongs to the probe's tip.
+    The maker gives modified Denavit–Hartenberg parameters (Craig): a_{i-1} and alpha_{i-1} stand before joint i.
     """
-    a_before_mm = (0.0, 0.0, 0.0, 82.5, -82.5, 0.0, 88.0)
-    d_mm = (333.0, 0.0, 316.0, 0.0, 384.0, 0.0)
-    alpha_before_rad = (0.0, -_QUARTER, _QUARTER, _QUARTER, -_QUARTER, _QUARTER, _QUARTER)
+    a_mm = (0.0, 0.0, 0.0, 82.5, -82.5, 0.0, 88.0)
+    d_mm = (333.0, 0.0, 316.0, 0.0, 384.0, 0.0, 0.0)
+    alpha_rad = (0.0, -_QUARTER, _QUARTER, _QUARTER, -_QUARTER, _QUARTER, _QUARTER)
     limits_rad = (
         (-2.8973, 2.8973),
         (-1.7628, 1.7628),
@@ -28,12 +27,10 @@ def panda() -> Arm:
         (-0.0175, 3.7525),
         (-2.8973, 2.8973),
     )
-    joints = [
-        Joint(0.0, alpha_before_rad[i + 1], a_before_mm[i + 1], d_mm[i], limits_rad=limits_rad[i]) for i in range(6)
-    ]
-    joints.append(Joint(limits_rad=limits_rad[6]))
+    rows = [Joint(0.0, alpha_rad[i], a_mm[i], d_mm[i], limits_rad=limits_rad[i]) for i in range(7)]
     flange_mm, hand_mm, ball_mm = 107.0, 103.4, 30.0
-    return Arm("Franka Emika Panda", tuple(joints), {"ball": Probe(0.0, 0.0, flange_mm + hand_mm + ball_mm)})
+    joints, probes, _ = from_modified(rows, {"ball": Probe(0.0, 0.0, flange_mm + hand_mm + ball_mm)})
+    return Arm("Franka Emika Panda", joints, probes)
 
 
 def ur10() -> Arm:

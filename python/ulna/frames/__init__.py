@@ -1,0 +1,1 @@
+"""Frames of a chain: rigid transforms, links between axes, the two conventions called Denavit–Hartenberg."""
