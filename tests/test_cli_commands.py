@@ -32,7 +32,8 @@ def test_calibrate_prints_and_writes(calibrated: tuple[Path, subprocess.Complete
     assert document["format"] == "ulna-result/1"
     assert len(document["residuals"]) == document["fit"]["readings"] == 101
     assert set(document["residuals"][0]) == {
-        *("row", "file", "artefact", "placement", "probe", "length_mm", "norm_mm", "weight")
+        *("row", "file", "artefact", "placement", "probe", "length_mm", "norm_mm", "weight"),
+        *("times_scatter", "outlier"),
     }
     status = {row["name"]: row["status"] for row in document["parameters"]}
     assert [name for name, each in status.items() if each == "not-determined"] == ["joint.1.theta0", "joint.1.d"]

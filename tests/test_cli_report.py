@@ -195,6 +195,7 @@ def test_after_a_bad_end_the_worst_row_and_a_missing_placement_are_named() -> No
         "artefact": ["bar"] * 4,
         "placement": ["1"] * 4,
         "feature": ["A", "B", "A", "B"],
+        "length_mm": pl.Series([None] * 4, dtype=pl.Float64),
         "norm_mm": [1.0, 64.0, 3.0, 2.0],
     }
     text = where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(rows)))
@@ -204,6 +205,6 @@ def test_after_a_bad_end_the_worst_row_and_a_missing_placement_are_named() -> No
         dataclasses.replace(result(), residuals=pl.DataFrame(rows | {"placement": ["1", "1", "2", "2"]}))
     )
     assert "one standing" not in text
-    lengths = rows | {"feature": pl.Series([None] * 4, dtype=pl.String)}
+    lengths = rows | {"feature": pl.Series([None] * 4, dtype=pl.String), "length_mm": rows["norm_mm"]}
     assert "one standing" not in where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(lengths)))
     assert where_to_look(result()) == ""

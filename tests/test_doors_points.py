@@ -63,14 +63,10 @@ def test_units_ids_and_the_file_s_rows(tmp_path: Path) -> None:
     assert list(study.readings[0].artefact.features) == ["m1", *(f"m{row}" for row in range(3, 9))]
 
 
-def test_uncertainties_become_one_and_it_is_said(tmp_path: Path) -> None:
+def test_each_point_has_its_own_uncertainty(tmp_path: Path) -> None:
     u = pl.Series("u", [0.01] * 7 + [0.02])
     study, warned = tracker(tmp_path, TABLE.with_columns(u)).load()
-    mean = float(np.sqrt(np.mean(u.to_numpy() ** 2)))
-    assert study.readings[0].artefact.u_mm == pytest.approx(mean)
-    says(warned[0], "bars.csv: column 'u' goes from 0.01 to 0.02", f"{mean:g}")
-    study, warned = tracker(tmp_path, TABLE.with_columns(u=pl.lit(0.03))).load()
-    assert (study.readings[0].artefact.u_mm, warned) == (0.03, [])
+    assert (study.readings[0].artefact.feature_u_mm, warned) == ((*[0.01] * 7, 0.02), [])
     small = tracker(tmp_path, TABLE.with_columns(-u))
     says(small.error(), "row 1 (line 2 of the file), column 'u': got -0.01", "0 or more")
     small = tracker(tmp_path, TABLE.with_columns(u), TRACKER.replace('"points"', '"points"\nu = 0.1'))
@@ -119,7 +115,7 @@ def test_points_of_several_files(tmp_path: Path) -> None:
     assert list(group.artefact.features) == names
     assert group.feature.tolist() == [*range(8), 8, 9, 2]  # its third row sees the very point that row 3 saw
     assert group.artefact.features["more.csv:m2"] == (XYZ[1, 0] / 2, XYZ[1, 1], XYZ[1, 2])
-    assert group.artefact.u_mm == pytest.approx(np.sqrt((8 * 0.03**2 + 3 * 0.04**2) / 11))
+    assert group.artefact.feature_u_mm == (*[0.03] * 8, 0.04, 0.04)
     says(warned[0], "more.csv: 1 row", "row 3 (as row 3 of")
 
 
@@ -163,7 +159,7 @@ def test_features_from_every_format(tmp_path: Path) -> None:
     ):
         keys = WRITERS[name](PLATE, tmp_path / name)
         artefact = plate(small, name, keys).readings[0].artefact
-        assert (artefact.features, artefact.u_mm) == (expected, pytest.approx(0.01)), name
+        assert (artefact.features, artefact.feature_u_mm) == (expected, (0.01, 0.01)), name
     import scipy.io
 
     xyz = PLATE.select("x", "y", "z").to_numpy()

@@ -13,7 +13,9 @@ from ulna.figures import MOST_PAIRED_SEATS, figures, over_groups
 from ulna.study import Artefact, Readings, Study
 
 # An "arm" whose tip is simply its first three readings, in mm: the figures see tips only.
-GANTRY: Any = SimpleNamespace(core=SimpleNamespace(tip=lambda q, probe: q[:, :3].copy()))
+GANTRY: Any = SimpleNamespace(
+    core=SimpleNamespace(tip=lambda q, probe, warmth_k: q[:, :3].copy()), warmth_k=lambda temperature_c, count: None
+)
 
 
 def readings(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ulna import Arm, InputWarning, Result, Study
+from ulna.assembly import assemble
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.study import Readings
 
@@ -66,7 +67,8 @@ def test_study_1(study: Study) -> None:
     assert (study.fit.start, study.fit.seed, study.fit.max_iterations) == ("search", 3, 50)
     assert study.fit.known_length_mm == pytest.approx(0.04 * 25.4)
     assert study.fit.known_angle_rad == pytest.approx(math.radians(0.5))
-    held = [name for name, hold in zip(study.arm.parameter_names, study.hold_mask(), strict=True) if hold]
+    assembled = assemble(study)
+    held = [name for name, hold in zip(assembled.names, assembled.hold, strict=True) if hold]
     assert held == ["joint.1.theta0", "probe.straight 2.x", "probe.straight 2.y", "probe.straight 2.z"]
     assert [(file.path.name, file.rows) for file in study.files] == [
         ("study-1.toml", 0),
@@ -76,7 +78,6 @@ def test_study_1(study: Study) -> None:
         ("readings-1.parquet", 2),
         ("lengths-1.csv", 2),
     ]
-    assert study.problem() is not None
 
 
 def test_readings_1_csv(study: Study) -> None:
@@ -103,7 +104,7 @@ def test_readings_1_parquet_and_plate(study: Study) -> None:
     assert plate.temperature_c is not None
     assert plate.temperature_c.tolist() == [20, 21]
     assert plate.artefact.features["s3"] == pytest.approx((0, 4 * 25.4, 0.1 * 25.4))
-    assert plate.artefact.u_mm == pytest.approx(0.00004 * 25.4)
+    assert plate.artefact.feature_u_mm == pytest.approx([0.00004 * 25.4] * 3)
 
 
 def test_lengths_1(study: Study) -> None:

@@ -10,6 +10,7 @@ import polars as pl
 import pytest
 from tests.small_study import BARS, PLATE, SmallStudy
 
+from ulna.assembly import assemble
 from ulna.files.table import iter_tables, read_header, read_table
 from ulna.study import Readings
 
@@ -47,7 +48,7 @@ def test_what_a_readings_file_says_arrives(small: SmallStudy) -> None:
     assert study.noise.seat_mm == 0.005
     assert study.noise.encoder_rad is not None
     assert study.noise.encoder_rad.tolist() == [5e-6] * 3
-    assert study.hold_mask().nonzero()[0].tolist() == [0]
+    assert assemble(study).hold.nonzero()[0].tolist() == [0]
 
 
 @pytest.mark.parametrize(
@@ -172,13 +173,12 @@ def test_features_from_a_file(small: SmallStudy) -> None:
     assert group.feature.tolist() == [2, 2, 0, 0] * 2
 
 
-def test_uncertainties_of_features_become_one_and_it_is_said(small: SmallStudy) -> None:
+def test_every_feature_has_its_own_uncertainty(small: SmallStudy) -> None:
     small.swap("study.toml", 'kind = "bar"\nlength = 443.172\nu = 0.001', 'kind = "points"\nfeatures = "plate.csv"')
     small.write("plate.csv", "feature,x,y,z,u\nA,0,0,0,0.003\nB,443,0,0,0.004\n")
     study, warned = small.load()
-    assert study.readings[0].artefact.u_mm == pytest.approx(np.sqrt((9 + 16) / 2) / 1000)
-    assert len(warned) == 1
-    assert "from 0.003 to 0.004" in warned[0]
+    assert study.readings[0].artefact.feature_u_mm == (0.003, 0.004)
+    assert warned == []
 
 
 def test_what_is_not_used_is_said(small: SmallStudy) -> None:
@@ -197,7 +197,7 @@ def test_fit_options(small: SmallStudy) -> None:
     small.swap("study.toml", "[fit]\n", '[fit]\nfree = ["joint.*"]\nstart = "search"\nseed = 5\nknown_length = 2\n')
     study, _ = small.load()
     assert (study.fit.start, study.fit.seed, study.fit.known_length_mm) == ("search", 5, 2.0)
-    assert study.hold_mask().tolist() == [True] + [False] * 7 + [True] * 6
+    assert assemble(study).hold.tolist() == [True] + [False] * 7 + [True] * 6
 
 
 def test_masks_and_subsets(small: SmallStudy) -> None:

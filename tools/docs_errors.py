@@ -130,7 +130,8 @@ CASES: dict[str, dict[str, Break]] = {
         "another number of joints": swap(ARM, "[[joint]]\ntheta0 = 1.521927\nalpha = -1.57\na = 35.0\nd = 149.7\n", ""),
         "a bar touched at one end only": rows(lambda data: data[:-1]),
         "fewer observations than unknowns": rows(lambda data: data[:20]),
-        "what comes with a later version": swap(STUDY, "[fit]", '[fit]\nloss = "huber"'),
+        "links that grow, and nobody knows how warm it was": swap(STUDY, "[fit]", '[fit]\nextras = ["link-expansion"]'),
+        "joints that give way to nothing": swap(STUDY, "[fit]", '[fit]\nextras = ["compliance"]'),
     },
 }
 #: the same for files that other commands read: what is wrong → command and file to write

@@ -39,47 +39,66 @@ class Arm:
         hayati: Bool,  # (n,)
         probe_names: Sequence[str],
         tips_mm: F64,  # (P, 3)
+        full_last_link: bool = False,  # then the last joint has a link too
     ) -> None: ...
+    def with_effects(
+        self,
+        harmonic_orders: Sequence[int] | None = None,  # (K,) ascending from 1
+        harmonics_rad: F64 | None = None,  # (n, K, 2) cosine and sine amplitudes
+        expansion_per_k: F64 | None = None,  # (n,)
+        compliance_rad_per_nm: F64 | None = None,  # (n,)
+        masses_kg: F64 | None = None,  # (n,) of what moves with each joint
+        centres_mm: F64 | None = None,  # (n, 3) in the frame after each link
+        gravity: Sequence[float] | None = None,  # direction in the base frame; (0, 0, -1) where None
+    ) -> Arm:
+        """The same arm with these effects beyond its geometry, in place of those that it had."""
     @property
     def joints(self) -> int: ...
+    @property
+    def signs(self) -> F64: ...
     @property
     def probe_names(self) -> list[str]: ...
     @property
     def parameter_names(self) -> list[str]:
-        """`joint.1.theta0, joint.1.alpha, joint.1.a, joint.1.d (or .beta) … probe.bent.x, .y, .z`; 4(n-1) + 3P."""
+        """`joint.1.theta0, joint.1.alpha, joint.1.a, joint.1.d (or .beta) … probe.bent.x, .y, .z`, then of the effects
+        `joint.1.c1, joint.1.s1 …`, `joint.1.expansion …`, `joint.1.compliance …`."""
     @property
     def parameter_units(self) -> list[str]:
-        """ "rad" or "mm" for each of `parameter_names`."""
+        """ "rad", "mm", "1/K" or "rad/(N m)" for each of `parameter_names`."""
     @property
     def parameters(self) -> F64: ...
     def with_parameters(self, parameters: F64) -> Arm: ...
     def reach_mm(self, probe: int = 0) -> float:
         """Sum of the lengths of all links and the tip: nothing is farther from the base."""
-    def tip(self, q_rad: F64, probe: int | I64 = 0) -> F64:
+    # warmth_k, everywhere: (N,) or (N, n) temperature above 20 °C of the links; None: 20 °C
+    def tip(self, q_rad: F64, probe: int | I64 = 0, warmth_k: F64 | None = None) -> F64:
         """(N, n) encoder angles → (N, 3) tip positions in the base frame; probe one index or one per row."""
-    def tip_plain(self, q_rad: F64, probe: int = 0) -> F64:
-        """The same by 4×4 matrices, one pose at a time: the formula as written, for comparison."""
-    def jacobian(self, q_rad: F64, probe: int = 0) -> F64:
-        """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm/rad and mm/mm."""
-    def encoder_jacobian(self, q_rad: F64, probe: int = 0) -> F64:
+    def tip_plain(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
+        """The same by frames, one pose at a time: the formula as written, for comparison."""
+    def jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
+        """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm for a unit of each."""
+    def encoder_jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
         """(N, n) → (N, 3, n): ∂p/∂q_i, mm/rad."""
-    def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64) -> F64:
+    def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64, warmth_k: F64 | None = None) -> F64:
         """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
-    def direction_effect(self, q_rad: F64, probe: int, columns: I64, directions: F64) -> F64:
+    def direction_effect(
+        self, q_rad: F64, probe: int, columns: I64, directions: F64, warmth_k: F64 | None = None
+    ) -> F64:
         """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters."""
     def pose_for_points(
         self, points_mm: F64, limits_rad: F64, seed: int, probe: int = 0, tries: int = 40
     ) -> tuple[F64, Bool]:
         """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a
         random elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
-    def check_jacobian(self, q_rad: F64, probe: int = 0) -> float:
+    def check_jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> float:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
 class LostDirection(TypedDict):
     combination: dict[
         str, float
     ]  # physical units (rad, mm); the largest effect has weight 1; moving along it changes no residual
-    cause: str  # "base-frame", "scale", "probe-on-axis", "probe-unused", "joint-still", "parallel-axes", "coverage"
+    cause: str  # "base-frame", "scale", "probe-on-axis", "probe-unused", "joint-still", "parallel-axes",
+    # "redundant-link", "temperature-still", "no-moment", "coverage"
     because: str
     remedy: str
     frame: bool  # true: a rigid motion of the base frame or such; no length or shape depends on it
@@ -111,6 +130,9 @@ class Identifiability:
     def weak(self) -> list[WeakDirection]:
         """Determined, but worse than an arm is known from its drawing (1 mm, 0.01 rad unless said otherwise)."""
     @property
+    def from_prior(self) -> list[str]:
+        """Free parameters of which the readings say next to nothing: what is known of them is their prior."""
+    @property
     def not_determined(self) -> list[str]:
         """Every free parameter that takes part in a lost direction."""
 
@@ -121,22 +143,60 @@ class Problem:
         """Standard deviations of the noise: (n,) per encoder, and of a touch per coordinate. Both None: every reading
         weighs one."""
     def add_lengths(
-        self, artefact: str, q_rad: F64, p_rad: F64, probe: I64, length_mm: F64, length_u_mm: float = 0.0
+        self,
+        artefact: str,
+        q_rad: F64,  # (N, n)
+        p_rad: F64,  # (N, n) the second pose
+        probe: I64,  # (N,) index into the arm's probes
+        length_mm: F64,  # (N,) distance between their tips
+        length_u_mm: float = 0.0,  # standard uncertainty, common to all rows
+        fitted: bool = False,  # whether the length may change within it
+        warmth_k: F64 | None = None,
     ) -> int:
-        """Rows of two poses (N, n), (N, n) and the distance (N,) between their tips. Returns the group's number."""
+        """Rows of two poses and the distance between their tips. Returns the group's number."""
     def add_points(
         self,
         artefact: str,
         features_mm: F64,  # (F, 3); a bar has (0,0,0) and (L,0,0); a seat has (0,0,0)
         frame: str,  # "free": each placement has an unknown pose; "arm": coordinates in the base frame
         q_rad: F64,  # (N, n)
-        probe: I64,  # (N,) index into the arm's probes
+        probe: I64,  # (N,)
         feature: I64,  # (N,) index into features
         placement: I64,  # (N,) any labels; equal means the same standing of the artefact. Ignored for frame = "arm"
-        feature_u_mm: float = 0.0,
+        u_mm: float | F64 | None = None,  # of a bar (two features, free) one number: its length's; else of each feature
+        labels: Sequence[str] | None = None,  # names of the features
+        fitted: bool = False,  # whether what is uncertain may move within u
+        warmth_k: F64 | None = None,
     ) -> int: ...
+    def add_sphere(
+        self,
+        artefact: str,
+        diameter_mm: float,
+        balls_mm: F64,  # (P,) diameter of each probe's ball
+        q_rad: F64,
+        probe: I64,
+        placement: I64,
+        diameter_u_mm: float = 0.0,
+        fitted: bool = False,  # the diameter: within its uncertainty, freely where that is 0
+        inside: bool = False,
+        warmth_k: F64 | None = None,
+    ) -> int:
+        """Touches of a ball's surface, or of a hollow's."""
+    def add_plane(self, balls_mm: F64, q_rad: F64, probe: I64, placement: I64, warmth_k: F64 | None = None) -> int:
+        """Touches of a flat."""
+    def add_prior(self, parameter: int, value: float, u: float) -> None:
+        """What is known of a parameter beforehand, in its unit; the number is that in `parameter_names`."""
+    def set_loss(self, name: str) -> None:
+        """ "none", "huber", "cauchy" or "tukey"."""
     @property
     def arm(self) -> Arm: ...
+    @property
+    def parameter_names(self) -> list[str]:
+        """The arm's, then the fitted dimensions of artefacts, such as `artefact.ball.diameter`."""
+    @property
+    def parameter_units(self) -> list[str]: ...
+    @property
+    def parameters(self) -> F64: ...
     def with_arm(self, arm: Arm) -> Problem: ...
 
 class Fitted:
@@ -144,6 +204,9 @@ class Fitted:
 
     @property
     def arm(self) -> Arm: ...
+    @property
+    def names(self) -> list[str]:
+        """Of all parameters: the arm's, then the fitted dimensions of artefacts."""
     @property
     def start(self) -> F64: ...
     @property
@@ -170,12 +233,12 @@ class Fitted:
     def rms_mm(self) -> float: ...
     @property
     def observations(self) -> int:
-        """Scalar equations: 3 per point reading, 1 per length row."""
+        """Scalar equations: 3 per point reading, 1 per length row or touch of a surface."""
     @property
     def placement_unknowns(self) -> int: ...
     @property
     def degrees_of_freedom(self) -> int:
-        """observations − placement unknowns − determined parameters."""
+        """observations and priors − placement unknowns − determined parameters."""
     @property
     def chi2_per_dof(self) -> float | None:
         """None without stated noise or without degrees of freedom."""
@@ -185,6 +248,9 @@ class Fitted:
     @property
     def search_reason(self) -> str:
         """ "" or "asked" or "poor-minimum"."""
+    @property
+    def undecided_signs(self) -> list[list[int]]:
+        """Sets of joints, from 1, that may all count the other way: readings and nominal arm do not tell."""
     @property
     def folded(self) -> list[str]:
         """Which symmetries brought the found arm back near the nominal: "flip of joint 3", "mirror"."""
@@ -198,9 +264,21 @@ class Fitted:
     @property
     def covariance_columns(self) -> I64:
         """Indices of the free parameters."""
+    @property
+    def priors(self) -> F64:
+        """(k, 2) over `covariance_columns`: value and standard uncertainty before; NaN where nothing was stated."""
+    @property
+    def scales(self) -> list[float]:
+        """Scatter of each group, from the median, in units of the stated noise (mm where none is stated)."""
+    def lengths(self, group: int) -> F64:
+        """(N,): how far off each reading is, in units of its group's scatter."""
+    def outliers(self, group: int) -> Bool:
+        """(N,): farther off than one normal reading in ten thousand."""
+    def counted(self, group: int) -> F64 | None:
+        """(N,): what the loss let each reading count, 0 to 1; None without a loss."""
     def residuals(self, group: int) -> F64:
         """(N, 3) mm in the base frame: tip minus where the feature stands; for a length group (N, 1): distance minus
-        length."""
+        length; for a surface (N, 1): distance from it, less the ball's radius."""
     def residuals_start(self, group: int) -> F64: ...
     def weights(self, group: int) -> F64:
         """(N,) root of the weight of each reading, 1/mm (1 without stated noise), isotropic equivalent."""
@@ -215,6 +293,8 @@ def fit(
     known_length_mm: float = 1.0,
     known_angle_rad: float = 0.01,
     progress: Progress | None = None,
+    unknown_signs: Bool | None = None,  # (n,) true: find the joint's sign
+    from_parameters: F64 | None = None,  # (parameters,) where the fit begins; the arm's own stay what is nominal
 ) -> Fitted:
     """Calibrate. Raises UlnaError for fewer observations than unknowns; KeyboardInterrupt when interrupted.
     Everything held: evaluate (placements are fitted, the arm is not)."""
@@ -223,6 +303,10 @@ def identify(
     problem: Problem, hold: Bool, known_length_mm: float = 1.0, known_angle_rad: float = 0.01
 ) -> Identifiability:
     """What these readings can and cannot determine at the problem's own arm, without fitting."""
+
+def costs(problem: Problem, hold: Bool, parameters: F64) -> F64:
+    """(k,) sums of squares at (k, free) sets of the free parameters, placements where they fit best, every reading
+    weighing alike: what a search without derivatives asks for."""
 
 def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:
     """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how fitted parameters follow held ones

@@ -11,18 +11,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError, nearest
+from ulna.assembly import Assembled, assemble
+from ulna.estimators import Searched, search_box
+from ulna.extras import judge_extras
 from ulna.figures import figures
 from ulna.identify import Identification
 from ulna.model import ParameterCovariance
+from ulna.options import with_options
+from ulna.outliers import outliers
 from ulna.provenance import provenance
 from ulna.residuals import residual_table
 from ulna.result import FitSummary, Parameter, Result
-from ulna.study import FitOptions, Study
+from ulna.running import run_assembled
+from ulna.study import Study
 
 if TYPE_CHECKING:
     from ulna import _core
 
+F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 
 
@@ -36,23 +42,28 @@ def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) 
     cannot be asked (fewer observations than unknowns, a pattern that matches nothing); KeyboardInterrupt.
     """
     study = with_options(study, **overrides)
-    hold = study.hold_mask()
     began = time.perf_counter()
-    problem = study.problem()
-    fitted = _fit(study, problem, hold, progress)
-    seconds = time.perf_counter() - began
-    arm = study.arm.with_parameters(fitted.parameters)
+    assembled = assemble(study)
+    searched = search_box(study, assembled, progress) if study.fit.method != "lm" else None
+    fitted = run_assembled(study, assembled, progress, None if searched is None else searched.parameters)
     identification = Identification.from_core(fitted.identifiability)
-    covariance = _covariance(study, problem, fitted, hold, identification)
+    covariance = _covariance(study, assembled, fitted, identification)
+    of_arm = len(assembled.arm.parameter_names)
+    arm = assembled.arm.with_signs(fitted.arm.signs).with_parameters(fitted.parameters[:of_arm])
     artefacts, after = figures(arm, study)
-    _, before = figures(study.arm, study)
+    _, before = figures(assembled.arm, study)
+    residuals = residual_table(study, fitted)
+    extras = judge_extras(study, progress) if study.fit.extras and study.fit.judge_extras else []
+    seconds = time.perf_counter() - began
     return Result(
-        arm=dataclasses.replace(arm, uncertainty=covariance),
-        parameters=_parameters(study, fitted, hold, covariance, identification),
+        arm=dataclasses.replace(arm, uncertainty=covariance.of(assembled.arm.parameter_names)),
+        parameters=_parameters(assembled, fitted, covariance, identification),
         covariance=covariance,
         identifiability=identification,
-        fit=FitSummary.from_core(fitted, sum(len(group) for group in study.readings)),
-        residuals=residual_table(study, fitted),
+        fit=_summary(study, fitted, searched),
+        residuals=residuals,
+        outliers=outliers(residuals),
+        extras=extras,
         artefacts=artefacts,
         before=before,
         after=after,
@@ -60,60 +71,19 @@ def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) 
     )
 
 
-def with_options(study: Study, **overrides: Any) -> Study:
-    """The study with some fields of its `fit` replaced. Raises UlnaInputError for a name that is none."""
-    known = [field.name for field in dataclasses.fields(FitOptions)]
-    for name in overrides:
-        if name not in known:
-            raise UlnaInputError(f"calibrate: there is no fit option '{name}'.{nearest(name, known)}")
-    study = dataclasses.replace(study, fit=dataclasses.replace(study.fit, **overrides))
-    for key, value, only in (("loss", study.fit.loss, "none"), ("extras", study.fit.extras, [])):
-        if value != only:
-            raise UlnaInputError(
-                f"{study.label}: key 'fit.{key}': {value!r} comes with a later version; expected {only!r} for now."
-            )
-    limits = (("seed", study.fit.seed, 2**63 - 1), ("max_iterations", study.fit.max_iterations, 1_000_000))
-    for name, number, most in limits:
-        if not 0 <= number <= most:
-            raise UlnaInputError(f"{study.label}: key 'fit.{name}': {number}; expected a whole number, 0 to {most}.")
-    if study.fit.start not in ("given", "search"):
-        raise UlnaInputError(
-            f"{study.label}: key 'fit.start': {study.fit.start!r}; expected 'given' or 'search'."
-            f"{nearest(str(study.fit.start), ('given', 'search'))}"
-        )
-    return study
-
-
-def run_fit(study: Study, hold: NDArray[np.bool_], progress: Progress | None = None) -> _core.Fitted:
-    """The core's fit with the study's options; its complaints as UlnaInputError, naming the study."""
-    return _fit(study, study.problem(), hold, progress)
-
-
-def _fit(study: Study, problem: _core.Problem, hold: NDArray[np.bool_], progress: Progress | None) -> _core.Fitted:
-    from ulna import _core
-
-    options = study.fit
-    try:
-        return _core.fit(
-            problem,
-            hold,
-            start=options.start,
-            max_iterations=options.max_iterations,
-            seed=options.seed,
-            known_length_mm=options.known_length_mm,
-            known_angle_rad=options.known_angle_rad,
-            progress=progress,
-        )
-    except _core.UlnaError as error:
-        raise UlnaInputError(f"{study.label}: {error}") from None
+def _summary(study: Study, fitted: _core.Fitted, searched: Searched | None) -> FitSummary:
+    return FitSummary.from_core(
+        fitted,
+        readings=sum(len(group) for group in study.readings),
+        method=study.fit.method,
+        loss=study.fit.loss,
+        box_evaluations=0 if searched is None else searched.evaluations,
+        scatter={group.artefact.name: scale for group, scale in zip(study.readings, fitted.scales, strict=True)},
+    )
 
 
 def _covariance(
-    study: Study,
-    problem: _core.Problem,
-    fitted: _core.Fitted,
-    hold: NDArray[np.bool_],
-    identification: Identification,
+    study: Study, assembled: Assembled, fitted: _core.Fitted, identification: Identification
 ) -> ParameterCovariance:
     """Of the fitted parameters, and of held ones that an earlier calibration left uncertain.
 
@@ -122,7 +92,7 @@ def _covariance(
     """
     from ulna import _core
 
-    names = study.arm.parameter_names
+    names, hold = assembled.names, assembled.hold
     fitted_names = [names[column] for column in fitted.covariance_columns]
     lost = [dict(direction) for direction in identification.lost]
     known = study.arm.uncertainty
@@ -132,7 +102,7 @@ def _covariance(
     held_names = [known.names[k] for k in kept]
     held = known.matrix[np.ix_(kept, kept)]
     columns = np.array([names.index(name) for name in held_names], dtype=np.int64)
-    follow = _core.held_sensitivity(problem, hold, fitted, columns)
+    follow = _core.held_sensitivity(assembled.problem, hold, fitted, columns)
     both = follow @ held
     matrix = np.block([[fitted.covariance + both @ follow.T, both], [both.T, held]])
     earlier = [dict(direction) for direction in known.lost if set(direction["combination"]) & set(held_names)]
@@ -140,22 +110,20 @@ def _covariance(
 
 
 def _parameters(
-    study: Study,
-    fitted: _core.Fitted,
-    hold: NDArray[np.bool_],
-    covariance: ParameterCovariance,
-    identification: Identification,
+    assembled: Assembled, fitted: _core.Fitted, covariance: ParameterCovariance, identification: Identification
 ) -> list[Parameter]:
-    """Start, value, standard uncertainty and status of every parameter of the arm, in its order."""
-    names = study.arm.parameter_names
+    """Start, value, standard uncertainty, status and prior of every parameter, in their order."""
+    names = assembled.names
     u = np.full(len(names), np.nan)
     # rounding may leave a variance that should be zero a hair below it
     u[[names.index(name) for name in covariance.names]] = np.sqrt(np.maximum(np.diag(covariance.matrix), 0.0))
     lost = set(identification.not_determined)
+    prior = dict(zip(fitted.covariance_columns.tolist(), fitted.priors.tolist(), strict=True))
     rows = []
-    for k, (name, unit) in enumerate(zip(names, study.arm.parameter_units, strict=True)):
-        status = "held" if hold[k] else "not-determined" if name in lost else "fitted"
+    for k, (name, unit) in enumerate(zip(names, assembled.units, strict=True)):
+        status = "held" if assembled.hold[k] else "not-determined" if name in lost else "fitted"
         known = status != "not-determined" and np.isfinite(u[k])
+        value, prior_u = prior.get(k, (np.nan, np.nan))
         rows.append(
             Parameter(
                 name=name,
@@ -164,6 +132,7 @@ def _parameters(
                 value=float(fitted.parameters[k]),
                 u=float(u[k]) if known else None,
                 status=status,
+                prior={"value": value, "u": prior_u} if np.isfinite(prior_u) else None,
             )
         )
     return rows

@@ -18,12 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibrate import run_fit, with_options
+from ulna.assembly import assemble
 from ulna.errors import UlnaInputError
 from ulna.figures import Figures, figures, over_groups
 from ulna.files.output import output_folder
 from ulna.folds import Fold, folds
+from ulna.options import with_options
+from ulna.parameters import hold_mask
 from ulna.provenance import provenance
+from ulna.running import run_fit
 from ulna.study import Study
 
 FORMAT = "ulna-cross-validation/1"
@@ -98,15 +101,12 @@ def cross_validate(
     `study.fit.seed`. `overrides` replace fields of `study.fit`. Raises UlnaInputError, KeyboardInterrupt.
     """
     study = with_options(study, **overrides)
-    hold = study.hold_mask()
-    names = study.arm.parameter_names
-    hold_all_but_probes = hold | np.array([not name.startswith("probe.") for name in names])
     how, left_out = folds(study, by)
     groups = []
     for number, fold in enumerate(left_out):
         if progress is not None:
             progress("groups left out", number, len(left_out))
-        groups.append(_judge(study, fold, hold, hold_all_but_probes))
+        groups.append(_judge(study, fold))
     if progress is not None:
         progress("groups left out", len(left_out), len(left_out))
     return CrossValidation(
@@ -118,17 +118,26 @@ def cross_validate(
     )
 
 
-def _judge(study: Study, fold: Fold, hold: NDArray[np.bool_], hold_all_but_probes: NDArray[np.bool_]) -> GroupFigures:
+def _judge(study: Study, fold: Fold) -> GroupFigures:
     training = study.subset([~mask for mask in fold.masks])
     test = study.subset(fold.masks)
     given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
+
+    def all_but_probes(names: list[str]) -> NDArray[np.bool_]:
+        held: NDArray[np.bool_] = np.array([not name.startswith("probe.") for name in names])
+        return hold_mask(study, names) | held
+
     try:
-        start = run_fit(given, hold_all_but_probes)
-        fitted = run_fit(training, hold)
+        start_arm = assemble(training).arm
+        fitted = run_fit(training)
+        # signs that nobody knows are those that were found
+        start = run_fit(given.with_arm(given.arm.with_signs(fitted.arm.signs)), all_but_probes)
     except UlnaInputError as error:
         raise UlnaInputError(f"without {fold.name} ({fold.rows} readings left out): {error}") from None
-    _, before = figures(study.arm.with_parameters(start.parameters), test)
-    _, after = figures(study.arm.with_parameters(fitted.parameters), test)
+    arm = start_arm.with_signs(fitted.arm.signs)
+    of_arm = len(arm.parameter_names)
+    _, before = figures(arm.with_parameters(start.parameters[:of_arm]), test)
+    _, after = figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
     return GroupFigures(
         group=fold.name,
         readings=fold.rows,

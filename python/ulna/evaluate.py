@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from ulna.calibrate import run_fit
 from ulna.errors import UlnaInputError, nearest
 from ulna.figures import Figures, PlacementFigures, figures
 from ulna.files.output import output_folder
 from ulna.model import Arm
 from ulna.provenance import provenance
 from ulna.residuals import residual_table
-from ulna.study import Study
+from ulna.running import run_fit
+from ulna.study import FitOptions, Study
 
 FORMAT = "ulna-evaluation/1"
 FILES = ("evaluation.json", "residuals.csv")
@@ -66,9 +66,9 @@ def evaluate(arm: Arm, study: Study, progress: Callable[[str, int, int], None] |
 
     Raises UlnaInputError where the arm has another number of joints or lacks a probe that the readings use.
     """
-    fitting = study_of_arm(study, arm)
-    fitting = dataclasses.replace(fitting, fit=dataclasses.replace(fitting.fit, start="given"))
-    fitted = run_fit(fitting, np.ones(len(arm.parameter_names), dtype=bool), progress)
+    # nothing of the arm is fitted, so what the study says of the fit does not matter
+    fitting = dataclasses.replace(study_of_arm(study, arm), fit=FitOptions(seed=study.fit.seed))
+    fitted = run_fit(fitting, lambda names: np.ones(len(names), dtype=bool), progress)
     artefacts, overall = figures(arm, fitting)
     return Evaluation(
         arm=arm,

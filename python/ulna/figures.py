@@ -10,6 +10,10 @@ All of it comes from the tip positions alone, without the fit's own idea of wher
   translation, no mirror, least squares after Kabsch 1976, Acta Cryst. A32) of those coordinates onto the placement's
   touches; for ``frame = "arm"`` without any fit, because the coordinates are in the arm's own frame.
 
+* **form**, **diameter error**: of touches of a surface, the spread of their distances from the least-squares sphere or
+  plane of the placement (largest minus smallest), and the sphere's diameter, less the ball's, minus the calibrated one
+  (signed; the largest in size over several placements). Placements touched too few times have none.
+
 Names end in the unit; `_mean_abs_` is the mean of magnitudes, `_mean_` of a length error is the signed mean.
 """
 
@@ -22,8 +26,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.assembly import balls_mm, warmth_k
 from ulna.model import Arm
-from ulna.study import Readings, Study
+from ulna.study import SURFACES, Readings, Study
+from ulna.surfaces import Errors, surface_errors
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -43,6 +49,8 @@ NAMES = (
     "coordinate_error_mean_mm",
     "coordinate_error_rms_mm",
     "coordinate_error_max_mm",
+    "form_mm",
+    "diameter_error_mm",
 )
 """Every figure, in the order in which it is shown. A figure that the readings do not give is left out, never 0."""
 
@@ -76,30 +84,26 @@ class PlacementFigures:
         return cls(entry["artefact"], entry["placement"], entry["kind"], entry["readings"], figures)
 
 
-@dataclass(frozen=True)
-class _Errors:
-    """The single errors of one quantity, each with the placement that it belongs to."""
-
-    value_mm: F64
-    code: I64
-
-
 def figures(arm: Arm, study: Study) -> tuple[list[PlacementFigures], Figures]:
     """Per artefact and placement, and over all touches and lengths of all of them together.
 
     `arm` must carry the study's probes in the study's order. Errors: those of the core for wrong shapes.
     """
     entries: list[PlacementFigures] = []
-    pooled: list[dict[str, _Errors]] = []
+    pooled: list[dict[str, Errors]] = []
     for readings in study.readings:
         # one probe for all is much quicker than one for each row
         probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
-        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe)
+        warmth = warmth_k(study, arm, readings)
+        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
         second_mm = None
         if readings.p_rad is not None:
-            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe)
+            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
         labels, code = placements(readings)
-        errors = errors_of_tips(readings, code, first_mm, second_mm)
+        if readings.artefact.kind in SURFACES:
+            errors = surface_errors(readings, code, first_mm, balls_mm(study, arm, readings)[readings.probe])
+        else:
+            errors = errors_of_tips(readings, code, first_mm, second_mm)
         pooled.append(errors)
         per_quantity = {name: _by_placement(name, error, len(labels)) for name, error in errors.items()}
         counts = np.bincount(code, minlength=len(labels))
@@ -109,7 +113,7 @@ def figures(arm: Arm, study: Study) -> tuple[list[PlacementFigures], Figures]:
                 PlacementFigures(readings.artefact.name, label, readings.artefact.kind, int(counts[number]), found)
             )
     overall: Figures = {}
-    for quantity in ("seat_scatter", "length_error", "coordinate_error"):
+    for quantity in ("seat_scatter", "length_error", "coordinate_error", "form", "diameter_error"):
         values = [errors[quantity].value_mm for errors in pooled if quantity in errors]
         if values:
             overall.update(_summaries(quantity, np.concatenate(values), np.zeros(1, dtype=np.int64))[0])
@@ -125,25 +129,25 @@ def placements(readings: Readings) -> tuple[list[str], I64]:
     return [str(readings.placement[row]) for row in first], code
 
 
-def errors_of_tips(readings: Readings, code: I64, first_mm: F64, second_mm: F64 | None) -> dict[str, _Errors]:
+def errors_of_tips(readings: Readings, code: I64, first_mm: F64, second_mm: F64 | None) -> dict[str, Errors]:
     """The single errors, mm, from tip positions (N, 3); `code` (N,) numbers the placements."""
     artefact = readings.artefact
     if artefact.kind == "length":
         assert second_mm is not None
         assert readings.length_mm is not None
         distance_mm = np.linalg.norm(second_mm - first_mm, axis=1)
-        return {"length_error": _Errors(distance_mm - readings.length_mm, code)}
+        return {"length_error": Errors(distance_mm - readings.length_mm, code)}
     features_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
     seat, seat_of_row, touches = np.unique(
         code * len(features_mm) + readings.feature, return_inverse=True, return_counts=True
     )
     seat_code, seat_feature = np.divmod(seat, len(features_mm))
     mean_mm = _grouped_mean(first_mm, seat_of_row, touches)
-    found: dict[str, _Errors] = {}
+    found: dict[str, Errors] = {}
     again = touches[seat_of_row] > 1
     if again.any():
         scatter_mm = np.linalg.norm(first_mm - mean_mm[seat_of_row], axis=1)
-        found["seat_scatter"] = _Errors(scatter_mm[again], code[again])
+        found["seat_scatter"] = Errors(scatter_mm[again], code[again])
     free_points = artefact.kind == "points" and artefact.frame == "free"
     if artefact.kind == "bar" or free_points:
         lengths = _pair_errors(mean_mm, seat_code, features_mm[seat_feature])
@@ -154,10 +158,10 @@ def errors_of_tips(readings: Readings, code: I64, first_mm: F64, second_mm: F64 
         if several.any():
             reference_mm = features_mm[readings.feature]
             error_mm = np.linalg.norm(first_mm - _placed(reference_mm, first_mm, code), axis=1)
-            found["coordinate_error"] = _Errors(error_mm[several], code[several])
+            found["coordinate_error"] = Errors(error_mm[several], code[several])
     elif artefact.kind == "points":
         error_mm = np.linalg.norm(first_mm - features_mm[readings.feature], axis=1)
-        found["coordinate_error"] = _Errors(error_mm, code)
+        found["coordinate_error"] = Errors(error_mm, code)
     return found
 
 
@@ -166,7 +170,7 @@ def _grouped_mean(values: F64, group: I64, counts: I64) -> F64:
     return np.stack([np.bincount(group, column, len(counts)) for column in values.T], axis=1) / counts[:, np.newaxis]
 
 
-def _pair_errors(mean_mm: F64, seat_code: I64, reference_mm: F64) -> _Errors | None:
+def _pair_errors(mean_mm: F64, seat_code: I64, reference_mm: F64) -> Errors | None:
     """Distances of all pairs of seats of a placement minus the calibrated ones. Seats are sorted by placement."""
     most = int(np.bincount(seat_code).max())
     if most > MOST_PAIRED_SEATS:
@@ -180,7 +184,7 @@ def _pair_errors(mean_mm: F64, seat_code: I64, reference_mm: F64) -> _Errors | N
         codes.append(seat_code[apart:][together])
     if not values:
         return None
-    return _Errors(np.concatenate(values), np.concatenate(codes))
+    return Errors(np.concatenate(values), np.concatenate(codes))
 
 
 def _placed(reference_mm: F64, tip_mm: F64, code: I64) -> F64:
@@ -200,7 +204,7 @@ def _placed(reference_mm: F64, tip_mm: F64, code: I64) -> F64:
     return placed
 
 
-def _by_placement(quantity: str, errors: _Errors, count: int) -> list[Figures]:
+def _by_placement(quantity: str, errors: Errors, count: int) -> list[Figures]:
     """The figures of each placement; {} where it has none."""
     found: list[Figures] = [{} for _ in range(count)]
     order = np.argsort(errors.code, kind="stable")
@@ -217,7 +221,10 @@ def _summaries(quantity: str, values_mm: F64, start: I64) -> list[Figures]:
     mean = np.add.reduceat(size, start) / counts
     rms = np.sqrt(np.add.reduceat(size**2, start) / counts)
     largest = np.maximum.reduceat(size, start)
-    if quantity == "length_error":
+    if quantity in ("form", "diameter_error"):
+        largest_at = [at + int(np.argmax(size[at : at + count])) for at, count in zip(start, counts, strict=True)]
+        columns = [values_mm[largest_at]]
+    elif quantity == "length_error":
         columns = [np.add.reduceat(values_mm, start) / counts, mean, rms, largest]
     else:
         columns = [mean, rms, largest]
@@ -237,8 +244,8 @@ def over_groups(groups: Iterable[Figures]) -> Figures:
         if name not in gathered:
             continue
         values = np.array(gathered[name])
-        if "_max_" in name:
-            found[name] = float(values.max())
+        if "_max_" in name or name in ("form_mm", "diameter_error_mm"):
+            found[name] = float(values[np.argmax(np.abs(values))])
         elif "_rms_" in name:
             found[name] = float(np.sqrt(np.mean(values**2)))
         else:

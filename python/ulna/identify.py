@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ulna.assembly import assemble
 from ulna.errors import UlnaInputError
 from ulna.study import Study
 
@@ -33,8 +34,10 @@ class Identification:
     """``{"combination": {name: weight}, "cause", "because", "remedy", "frame"}``; weights in rad and mm, the largest
     effect has weight 1; ``frame`` true: a motion of the base frame, on which no length or shape depends."""
     weak: list[dict[str, Any]] = field(default_factory=list)
-    """Determined, but worse than an arm is known from its drawing:
+    """Determined, but worse than an arm is known from its drawing; nothing that has a prior:
     ``{"combination", "u", "unit", "because", "remedy"}``."""
+    from_prior: list[str] = field(default_factory=list)
+    """Parameters of which the readings say next to nothing: what is known of them is their prior."""
 
     @classmethod
     def from_core(cls, found: _core.Identifiability) -> Identification:
@@ -48,12 +51,14 @@ class Identification:
             not_determined=list(found.not_determined),
             lost=[dict(direction) for direction in found.lost],
             weak=[dict(direction) for direction in found.weak],
+            from_prior=list(found.from_prior),
         )
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> Identification:
         """The inverse of `as_dict`."""
-        return cls(**{name: entry[name] for name in cls.__dataclass_fields__})
+        values = {"from_prior": []} | dict(entry)  # older files know no priors
+        return cls(**{name: values[name] for name in cls.__dataclass_fields__})
 
     def as_dict(self) -> dict[str, Any]:
         """As in `result.json`, key `identifiability`."""
@@ -67,14 +72,14 @@ def identify(study: Study) -> Identification:
     """
     from ulna import _core
 
-    hold = study.hold_mask()
-    if hold.all():
+    assembled = assemble(study)
+    if assembled.hold.all():
         raise UlnaInputError(
             f"{study.label}: keys 'fit.free' and 'fit.hold' hold every parameter; expected at least one to ask about."
         )
-    problem = study.problem()
+    known = study.fit.known_length_mm, study.fit.known_angle_rad
     try:
-        found = _core.identify(problem, hold, study.fit.known_length_mm, study.fit.known_angle_rad)
+        found = _core.identify(assembled.problem, assembled.hold, *known)
     except _core.UlnaError as error:
         raise UlnaInputError(f"{study.label}: {error}") from None
     return Identification.from_core(found)

@@ -64,6 +64,7 @@ def measure(
     sheet: str | None = None,
     dataset: str | None = None,
     columns: Mapping[str, str] | None = None,
+    temperature_c: float | None = None,
     force: bool = False,
     progress: Progress | None = None,
 ) -> Measurement:
@@ -74,13 +75,14 @@ def measure(
     encoders where the study stated their noise (or `encoder_u_rad`, (n,), does).
     `separator`, `decimal`, `header`, `sheet`, `dataset`, `columns`: how the file is written, as in a study's
     ``[[readings]]``.
+    `temperature_c`: of all readings, °C, where the arm's links grow with it and the file has no column ``temperature``.
     `out`: a CSV or Parquet file (by its ending), written whole or not at all; None: the table is returned in memory.
     Raises UlnaInputError naming the first bad cell; KeyboardInterrupt leaves nothing behind.
     """
     layout = Layout.of_options(
         columns, separator=separator, decimal=decimal, header=header, sheet=sheet, dataset=dataset
     )
-    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout)
+    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout, temperature_c)
     table = path = None
     if out is None:
         table = pl.concat(list(job.frames(progress)))
@@ -103,12 +105,13 @@ def measure_to_stream(
     angle: Angle = "rad",
     units: Literal["mm", "m", "in"] = "mm",
     layout: Layout = AS_EXPECTED,
+    temperature_c: float | None = None,
 ) -> Measurement:
     """The same, written as CSV (or one JSON object a line) to an open file, such as stdout.
 
     What went out cannot be taken back, so all readings are checked before the first point is written.
     """
-    job = MeasureJob(arm, Path(readings), probe, angle, units, layout=layout)
+    job = MeasureJob(arm, Path(readings), probe, angle, units, layout=layout, temperature_c=temperature_c)
     job.check()
     for number, frame in enumerate(job.frames()):
         # as text, so that a reader who has gone away is noticed as Python notices it

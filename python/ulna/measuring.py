@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -43,6 +44,7 @@ class MeasureJob:
         units: str = "mm",
         encoder_u_rad: F64 | None = None,
         layout: Layout = AS_EXPECTED,
+        temperature_c: float | None = None,
     ) -> None:
         """Raises UlnaInputError for whatever is wrong before the first row."""
         if isinstance(arm, Arm):
@@ -59,6 +61,8 @@ class MeasureJob:
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
         check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        self._temperature_c = temperature_c
+        self._warm = self._temperatures(remarks)
         self._texts = [name for name in ("id", "probe") if name in self.header.columns]
         self._probe = self._fixed_probe(probe, remarks)
         if "p1" in self.header.columns:
@@ -81,7 +85,7 @@ class MeasureJob:
     def check(self) -> None:
         """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
         cannot be taken back."""
-        for piece in stream(self.header, self._q, self._texts):
+        for piece in self._pieces():
             self._angles(piece)
             self._probes(piece)
         self._outside.clear()
@@ -90,7 +94,7 @@ class MeasureJob:
     def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
         """The output in pieces. Warns with InputWarning of readings outside the joints' limits."""
         total = count_rows(self.header)
-        for piece in stream(self.header, self._q, self._texts):
+        for piece in self._pieces():
             yield self._measured(piece)
             self.rows += len(piece)
             if progress is not None:
@@ -104,16 +108,21 @@ class MeasureJob:
         """Why uncertainties were left empty; complete when `frames` are used up."""
         return [] if self._uncertainty is None else self._uncertainty.notes
 
+    def _pieces(self) -> Iterator[Piece]:
+        return stream(self.header, self._q + self._warm, self._texts)
+
     def _measured(self, piece: Piece) -> pl.DataFrame:
         q_rad = self._angles(piece)
         probe = self._probes(piece)
-        p_mm = self.arm.core.tip(q_rad, probe)
+        warmth_k = self._warmth_k(piece)
+        p_mm = self.arm.core.tip(q_rad, probe, warmth_k)
         values = [p_mm]
         if self._uncertainty is not None:
             u_mm = np.empty_like(p_mm)
             for k in np.unique(probe):
                 rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
-                u_mm[rows] = self._uncertainty.of(np.ascontiguousarray(q_rad[rows]), int(k))
+                warmth = None if warmth_k is None else np.ascontiguousarray(warmth_k[rows])
+                u_mm[rows] = self._uncertainty.of(np.ascontiguousarray(q_rad[rows]), int(k), warmth)
             values.append(u_mm)
         numbers = np.concatenate(values, axis=1) / MM_PER[self.unit]
         columns = dict(piece.texts)
@@ -122,7 +131,7 @@ class MeasureJob:
         return pl.DataFrame(columns)
 
     def _angles(self, piece: Piece) -> F64:
-        q = piece.numbers
+        q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
         q_rad = q if self._angle == "rad" else q * self._rad_per
         if max(q_rad.max(), -q_rad.min()) > MOST_RAD:
             row, k = (int(at[0]) for at in np.nonzero(np.abs(q_rad) > MOST_RAD))
@@ -141,6 +150,28 @@ class MeasureJob:
                     rows += (np.flatnonzero(out)[:_SHOWN_ROWS] + piece.before + 1).tolist()
                     self._outside_count[k] = self._outside_count.get(k, 0) + int(out.sum())
         return q_rad
+
+    def _warmth_k(self, piece: Piece) -> F64 | None:
+        temperature_c = piece.numbers[:, self.arm.n :]
+        if temperature_c.shape[1] == 1:
+            temperature_c = temperature_c[:, 0]
+        return self.arm.warmth_k(temperature_c if self._warm else self._temperature_c, len(piece))
+
+    def _temperatures(self, remarks: list[str]) -> list[str]:
+        """The columns that say how warm it was, where that matters. Raises UlnaInputError where nothing says it."""
+        if "link-expansion" not in self.arm.extras:
+            if self._temperature_c is not None:
+                remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
+            return []
+        found = [name for name in self.header.columns if re.fullmatch("temperature[0-9]*", name)]
+        if not found and self._temperature_c is None:
+            raise UlnaInputError(
+                f"{self.header.path}: no column 'temperature', but the links of arm '{self.arm.name}' grow with it; "
+                "expected °C, of each reading or of all. Add the column, or give --temperature."
+            )
+        if found and self._temperature_c is not None:
+            remarks.append(f"{self.header.path}: the temperature given for all is not used: the file has its own.")
+        return found if found == ["temperature"] else [f"temperature{k + 1}" for k in range(len(found))]
 
     def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
         if self._probe is not None:

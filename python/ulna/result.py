@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +13,10 @@ import numpy as np
 import polars as pl
 
 from ulna.errors import UlnaInputError
+from ulna.extras import JudgedExtra
 from ulna.figures import Figures, PlacementFigures
 from ulna.files.arm import arm_document, arm_of_result, arm_toml
+from ulna.files.covariance import covariance_of_result
 from ulna.files.output import output_folder
 from ulna.files.toml import check_format, read_json
 from ulna.identify import Identification
@@ -34,15 +36,24 @@ class Parameter:
     """One parameter of the arm before and after."""
 
     name: str
-    """As `joint.3.theta0` or `probe.bent.x`."""
+    """As `joint.3.theta0`, `probe.bent.x`, `joint.3.c1` or `artefact.ball.diameter`."""
     unit: str
-    """"rad" or "mm", of start, value and u."""
+    """"rad", "mm", "1/K" or "rad/(N m)", of start, value and u."""
     start: float
     value: float
     u: float | None
     """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
     status: str
     """"fitted", "held" or "not-determined"."""
+    prior: dict[str, float] | None = None
+    """What was known of it before: value and u, where the fit used it."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """As in `result.json`, list `parameters`."""
+        entry = asdict(self)
+        if self.prior is None:
+            del entry["prior"]
+        return entry
 
 
 @dataclass(frozen=True)
@@ -63,7 +74,7 @@ class FitSummary:
     rms_mm: float
     readings: int
     observations: int
-    """Scalar equations: three for each point reading, one for each length row."""
+    """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
     placement_unknowns: int
     degrees_of_freedom: int
     chi2_per_dof: float | None
@@ -71,12 +82,21 @@ class FitSummary:
     searched_starts: int
     search_reason: str
     folded: list[str]
+    undecided_signs: list[list[int]] = field(default_factory=list)
+    """Sets of joints that may all count the other way: readings and the arm file do not tell."""
+    method: str = "lm"
+    """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
+    box_evaluations: int = 0
+    """How often that search evaluated the sum of squares."""
+    loss: str = "none"
+    scatter: dict[str, float] = field(default_factory=dict)
+    """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
 
     @classmethod
-    def from_core(cls, fitted: _core.Fitted, readings: int) -> FitSummary:
-        """Copy out of the core."""
-        values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name != "readings"}
-        return cls(**(values | {"readings": readings, "folded": list(fitted.folded)}))
+    def from_core(cls, fitted: _core.Fitted, **more: Any) -> FitSummary:
+        """Copy out of the core; `more` are the fields that it does not know."""
+        values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name not in more}
+        return cls(**(values | more | {"folded": list(fitted.folded)}))
 
     def as_dict(self) -> dict[str, Any]:
         """As in `result.json`, key `fit`; `chi2_per_dof` is left out where it is not known."""
@@ -89,7 +109,8 @@ class FitSummary:
     def from_dict(cls, entry: Mapping[str, Any]) -> FitSummary:
         """The inverse of `as_dict`."""
         values: dict[str, Any] = {"chi2_per_dof": None} | dict(entry)
-        return cls(**{name: values[name] for name in cls.__dataclass_fields__})
+        # older files lack the later fields
+        return cls(**{name: values[name] for name in cls.__dataclass_fields__ if name in values})
 
 
 @dataclass
@@ -111,6 +132,10 @@ class Result:
     after: Figures
     """The same over all placements, of the calibrated arm."""
     provenance: dict[str, Any]
+    outliers: list[dict[str, Any]] = field(default_factory=list)
+    """Readings far off the rest of their artefact's, the farthest first: see `ulna.outliers`."""
+    extras: list[JudgedExtra] = field(default_factory=list)
+    """Blocks beyond geometry, each judged by readings left out."""
 
     @property
     def probes(self) -> list[ProbeView]:
@@ -122,11 +147,13 @@ class Result:
         return {
             "format": FORMAT,
             "arm": arm_document(self.arm),
-            "parameters": [asdict(row) for row in self.parameters],
+            "parameters": [row.as_dict() for row in self.parameters],
             "probes": {view.name: view.as_dict() for view in self.probes},
             "covariance": {"names": self.covariance.names, "matrix": _json_matrix(self.covariance.matrix)},
             "identifiability": self.identifiability.as_dict(),
             "fit": self.fit.as_dict(),
+            "outliers": self.outliers,
+            "extras": [entry.as_dict() for entry in self.extras],
             "artefacts": [entry.as_dict() for entry in self.artefacts],
             "overall": {"before": self.before, "after": self.after},
             "provenance": self.provenance,
@@ -159,12 +186,11 @@ class Result:
         document, _ = read_json(path, "a result.json")
         check_format(document, path, "ulna-result")
         arm = arm_of_result(document, path)
-        assert arm.uncertainty is not None
         try:
             return cls(
                 arm=arm,
                 parameters=[Parameter(**entry) for entry in document["parameters"]],
-                covariance=arm.uncertainty,
+                covariance=covariance_of_result(document, arm, path),
                 identifiability=Identification.from_dict(document["identifiability"]),
                 fit=FitSummary.from_dict(document["fit"]),
                 residuals=from_json_rows(document["residuals"]),
@@ -172,6 +198,8 @@ class Result:
                 before=document["overall"]["before"],
                 after=document["overall"]["after"],
                 provenance=document["provenance"],
+                outliers=document.get("outliers", []),
+                extras=[JudgedExtra(**entry) for entry in document.get("extras", [])],
             )
         except (KeyError, TypeError, pl.exceptions.PolarsError) as error:
             raise UlnaInputError(

@@ -5,25 +5,25 @@ Made from files by `ulna.files.study`; nothing here reads or writes.
 
 from __future__ import annotations
 
-import fnmatch
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError, nearest
 from ulna.model import Arm
-
-if TYPE_CHECKING:
-    from ulna import _core
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 Bool = NDArray[np.bool_]
 
-ArtefactKind = Literal["bar", "seat", "points", "length"]
+ArtefactKind = Literal["bar", "seat", "points", "length", "sphere", "plane"]
+Loss = Literal["none", "huber", "cauchy", "tukey"]
+Method = Literal["lm", "annealing", "evolution"]
+
+SURFACES = ("sphere", "plane")
+"""Kinds that are touched with the ball of the tip on their surface."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,23 @@ class Artefact:
     name: str
     kind: ArtefactKind
     features: dict[str, tuple[float, float, float]]
-    """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; length: none."""
+    """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; others: none."""
     length_mm: float | None = None
     """bar only: distance between its seats."""
     u_mm: float = 0.0
-    """Standard uncertainty: of the length of a bar or of length rows; per coordinate of each feature of points."""
+    """Standard uncertainty: of the length of a bar or of length rows, of the diameter of a sphere; per coordinate of
+    each feature of points, where `feature_u_mm` does not say it of each."""
     frame: Literal["free", "arm"] = "free"
     """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
+    feature_u_mm: tuple[float, ...] | None = None
+    """points only: standard uncertainty of the coordinates of each feature, in the order of `features`."""
+    diameter_mm: float | None = None
+    """sphere only."""
+    inside: bool = False
+    """sphere only: a hollow, touched from within."""
+    fitted: bool = False
+    """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a sphere's
+    diameter of which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +129,25 @@ class Noise:
 
 
 @dataclass(frozen=True)
+class Prior:
+    """What is known of parameters before any reading."""
+
+    u: float
+    """Standard deviation."""
+    value: float | None = None
+    """None: the value in the arm file, or of the artefact."""
+    length_mm: float = 1.0
+    """mm in the unit of length that u and value are in, for parameters that are lengths."""
+    angle_rad: float = 1.0
+    """The same for angles."""
+
+    def in_unit(self, unit: str) -> tuple[float, float | None]:
+        """u and value for a parameter of this unit: "rad", "mm", "1/K" or "rad/(N m)"."""
+        factor = self.length_mm if unit == "mm" else self.angle_rad if unit.startswith("rad") else 1.0
+        return self.u * factor, None if self.value is None else self.value * factor
+
+
+@dataclass(frozen=True)
 class FitOptions:
     """What is fitted, and how."""
 
@@ -126,12 +155,31 @@ class FitOptions:
     """Shell-style patterns over parameter names that are not fitted."""
     free: list[str] = field(default_factory=lambda: ["*"])
     """Patterns of what may be fitted; `hold` wins."""
-    loss: str = "none"
+    loss: Loss = "none"
+    """How residuals count that are far off: by their squares, or less."""
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
     extras: list[str] = field(default_factory=list)
+    """Blocks of the model beyond geometry: "encoder-harmonics", "link-expansion", "compliance"."""
+    harmonics: list[int] = field(default_factory=lambda: [1, 2])
+    """Orders of the encoders' harmonics, where extras ask for them."""
+    prior: dict[str, Prior] = field(default_factory=dict)
+    """Shell-style patterns over parameter names; where several match, the last one holds."""
+    judge_extras: bool = True
+    """Whether extras are judged by cross-validation, refitting without each."""
+    method: Method = "lm"
+    """"annealing", "evolution": the box around the start is searched without derivatives, and what it finds is finished
+    by "lm"."""
+    budget: int = 100_000
+    """How often such a search may evaluate the sum of squares."""
+    box_length_mm: float = 100.0
+    """Half the width of the box searched, for lengths."""
+    box_angle_rad: float = 0.2
+    """The same for twists."""
+    box_offset_rad: float = 1.0
+    """The same for zero offsets; with start "search" the whole turn."""
     seed: int = 0
-    """Of the search over starts."""
+    """Of the search over starts, and of the methods without derivatives."""
     max_iterations: int = 200
     known_length_mm: float = 1.0
     """How well lengths are known before any reading: a parameter determined worse than this is called weak."""
@@ -169,56 +217,6 @@ class Study:
     def label(self) -> str:
         """How messages call this study."""
         return "study" if self.path is None else str(self.path)
-
-    def hold_mask(self) -> Bool:
-        """(parameters,) true where not fitted: all but `free`, and `hold`. Raises UlnaInputError for a vain pattern."""
-        names = self.arm.parameter_names
-        free = np.zeros(len(names), dtype=bool)
-        for value, patterns, key in ((True, self.fit.free, "fit.free"), (False, self.fit.hold, "fit.hold")):
-            for pattern in patterns:
-                hits = np.array([fnmatch.fnmatchcase(name, pattern) for name in names], dtype=bool)
-                if not hits.any():
-                    raise UlnaInputError(
-                        f"{self.label}: key '{key}': the pattern '{pattern}' matches no parameter of arm "
-                        f"'{self.arm.name}'; expected a name such as joint.1.theta0 or a pattern such as joint.6.*."
-                        f"{nearest(pattern, names)}"
-                    )
-                free[hits] = value
-        return ~free
-
-    def problem(self) -> _core.Problem:
-        """The readings in the compiled core: group k is ``readings[k]``. Raises UlnaInputError."""
-        from ulna import _core
-
-        noise = self.noise or Noise()
-        try:
-            problem = _core.Problem(self.arm.core, noise.encoder_rad, noise.seat_mm)
-            for group in self.readings:
-                self._add(problem, group)
-        except _core.UlnaError as error:
-            raise UlnaInputError(f"{self.label}: {error}") from None
-        return problem
-
-    def _add(self, problem: _core.Problem, group: Readings) -> None:
-        artefact = group.artefact
-        q_rad = np.ascontiguousarray(group.q_rad)
-        if artefact.kind == "length":
-            assert group.p_rad is not None
-            assert group.length_mm is not None
-            p_rad = np.ascontiguousarray(group.p_rad)
-            problem.add_lengths(artefact.name, q_rad, p_rad, group.probe, group.length_mm, artefact.u_mm)
-            return
-        features_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
-        problem.add_points(
-            artefact.name,
-            features_mm,
-            artefact.frame,
-            q_rad,
-            group.probe,
-            group.feature,
-            group.placement_code,
-            artefact.u_mm,
-        )
 
     def subset(self, masks: list[Bool]) -> Study:
         """The same study with only some rows: one mask (N,) for each of `readings`; artefacts left empty drop out."""

@@ -24,6 +24,8 @@ MOVES_MM = 1e-3
 """A lost direction matters at a pose where a step along it as large as a drawing leaves open, `DRAWN_MM` or `DRAWN_RAD`
 of its leading parameter, moves the tip by more than this, mm."""
 DRAWN_MM, DRAWN_RAD = 1.0, 0.01
+_DRAWN = {"mm": DRAWN_MM, "rad": DRAWN_RAD, "1/K": 3e-5, "rad/(N m)": 1e-3}
+"""What may be of each unit before anybody has measured: a drawing, a material, a bearing."""
 
 
 class TipUncertainty:
@@ -44,36 +46,42 @@ class TipUncertainty:
             for name, weight in direction["combination"].items():
                 self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
             units = dict(zip(arm.parameter_names, arm.parameter_units, strict=True))
-            sizes = [(w if units[n] == "mm" else w * DRAWN_MM / DRAWN_RAD) for n, w in direction["combination"].items()]
-            self._directions[row] *= DRAWN_MM / max(abs(size) for size in sizes)
+            sizes = [abs(weight) / _DRAWN[units[name]] for name, weight in direction["combination"].items()]
+            self._directions[row] /= max(sizes)
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 
-    def of(self, q_rad: F64, probe: int) -> F64:
-        """(N, n) → (N, 3) mm; NaN where the tip depends on what was not determined."""
+    def of(self, q_rad: F64, probe: int, warmth_k: F64 | None = None) -> F64:
+        """(N, n) → (N, 3) mm; NaN where the tip depends on what was not determined. warmth_k: as `Arm.warmth_k`."""
         if not self._estimated:
             return np.full((len(q_rad), 3), np.nan)
-        blocks = [q_rad[start : start + _BLOCK_ROWS] for start in range(0, len(q_rad), _BLOCK_ROWS)]
-        u_mm = np.concatenate([np.empty((0, 3)), *self._pool.map(lambda q: self._block(q, probe), blocks)])
+
+        def block(start: int) -> F64:
+            rows = slice(start, start + _BLOCK_ROWS)
+            return self._block(q_rad[rows], probe, None if warmth_k is None else warmth_k[rows])
+
+        u_mm = np.concatenate([np.empty((0, 3)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
         if self._lost:
-            moved = self._core.direction_effect(q_rad, probe, self._lost_columns, self._directions) > MOVES_MM
+            moved = self._effect_mm(q_rad, probe, warmth_k, self._directions) > MOVES_MM
             if moved.any():
                 u_mm[moved] = np.nan
-                self._tell_which(q_rad[moved], probe)
+                self._tell_which(q_rad[moved], probe, None if warmth_k is None else warmth_k[moved])
         return u_mm
 
-    def _block(self, q_rad: F64, probe: int) -> F64:
+    def _block(self, q_rad: F64, probe: int, warmth_k: F64 | None) -> F64:
         parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
-        covariance = self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe])
+        covariance = self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], warmth_k)
         u_mm: F64 = np.sqrt(np.maximum(covariance[:, [0, 3, 5]], 0.0))
         return u_mm
 
-    def _tell_which(self, q_rad: F64, probe: int) -> None:
+    def _effect_mm(self, q_rad: F64, probe: int, warmth_k: F64 | None, directions: F64) -> F64:
+        return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, warmth_k)
+
+    def _tell_which(self, q_rad: F64, probe: int, warmth_k: F64 | None) -> None:
         for row in range(len(self._lost)):
             if (row, probe) in self._told:
                 continue
-            effect_mm = self._core.direction_effect(q_rad, probe, self._lost_columns, self._directions[row : row + 1])
-            if (effect_mm > MOVES_MM).any():
+            if (self._effect_mm(q_rad, probe, warmth_k, self._directions[row : row + 1]) > MOVES_MM).any():
                 self._told[row, probe] = None
 
     @property
@@ -90,8 +98,8 @@ class TipUncertainty:
 def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
     """(parameters, parameters), standing for the calibration and, for this probe, the encoders; zero where held.
 
-    An encoder's noise acts as noise of its joint's zero offset (turn = sign q - theta0); of the last joint, which has
-    none, as noise of the tip across its axis: the tip turns with it.
+    An encoder's noise acts as noise of its joint's zero offset (turn = sign q - theta0); of a last joint that has none,
+    as noise of the tip across its axis: the tip turns with it.
     """
     known = arm.uncertainty
     assert known is not None
@@ -100,8 +108,11 @@ def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
     columns = [names.index(name) for name in known.names]
     whole[np.ix_(columns, columns)] = known.matrix
     if encoder_u_rad is not None:
-        offsets = [names.index(f"joint.{k}.theta0") for k in range(1, arm.n)]
-        whole[offsets, offsets] += encoder_u_rad[:-1] ** 2
+        linked = arm.n if arm.full_last_link else arm.n - 1
+        offsets = [names.index(f"joint.{k}.theta0") for k in range(1, linked + 1)]
+        whole[offsets, offsets] += encoder_u_rad[:linked] ** 2
+        if arm.full_last_link:
+            return whole
         tip = [names.index(f"probe.{probe}.{axis}") for axis in "xyz"]
         x_mm, y_mm, _ = arm.probes[probe].tip_mm
         across = np.array([-y_mm, x_mm, 0.0])

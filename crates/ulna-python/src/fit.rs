@@ -39,7 +39,8 @@ fn watched<T: Send>(
 /// Calibrates.
 #[pyfunction]
 #[pyo3(signature = (problem, hold, start="given", max_iterations=200, seed=0, search_starts=2000,
-                    known_length_mm=1.0, known_angle_rad=0.01, progress=None, unknown_signs=None))]
+                    known_length_mm=1.0, known_angle_rad=0.01, progress=None, unknown_signs=None,
+                    from_parameters=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit(
     py: Python<'_>,
@@ -53,6 +54,7 @@ pub fn fit(
     known_angle_rad: f64,
     progress: Option<Py<PyAny>>,
     unknown_signs: Option<PyReadonlyArray1<'_, bool>>,
+    from_parameters: Option<PyReadonlyArray1<'_, f64>>,
 ) -> PyResult<Fitted> {
     let free = free(&problem, &hold)?;
     let options = Options {
@@ -71,7 +73,8 @@ pub fn fit(
         known: Known { length_mm: known_length_mm, angle_rad: known_angle_rad },
     };
     let inner = &mut problem.inner;
-    let inner = watched(py, progress, |watch| calibrate::fit(inner, &free, &options, watch))?;
+    let from = from_parameters.as_ref().map(slice);
+    let inner = watched(py, progress, |watch| calibrate::fit_from(inner, &free, from.as_deref(), &options, watch))?;
     Ok(Fitted { inner })
 }
 

@@ -15,7 +15,7 @@ use crate::residuals::{Unweighted, Weighing};
 use crate::robust::Standing;
 use crate::settle::least_scatter;
 use crate::solve::{ASSUMED_SCATTER_MM, prepare};
-pub use crate::solve::{Options, SearchReason, Solution, Start, solve};
+pub use crate::solve::{Options, SearchReason, Solution, Start, solve, solve_from};
 use crate::solver::LeastSquares;
 use crate::solver::gram::Cost;
 use crate::solver::triangle::Triangle;
@@ -212,13 +212,31 @@ fn identifiability(
 /// # Errors
 /// As [`solve`].
 pub fn fit(problem: &mut Problem, free: &[usize], options: &Options, monitor: &dyn Monitor) -> Result<Fitted> {
+    fit_from(problem, free, None, options, monitor)
+}
+
+/// [`fit`] from other parameters than the problem's own, which stay what is nominal.
+///
+/// # Errors
+/// As [`fit`], or another number of parameters.
+pub fn fit_from(
+    problem: &mut Problem,
+    free: &[usize],
+    from: Option<&[f64]>,
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Fitted> {
+    let expected = problem.parameter_count();
+    if let Some(from) = from.filter(|from| from.len() != expected) {
+        return Err(Error::Shape { what: "the parameters to start from".into(), got: from.len(), expected });
+    }
     if problem.readings() == 0 {
         return Err(Error::NoReadings);
     }
     let start = problem.parameters();
     check_count(problem, free)?;
     let (residuals_start, rms_start_mm) = problem.unweighted(&start);
-    let mut solution = solve(problem, free, options, monitor)?;
+    let mut solution = solve_from(problem, free, from, options, monitor)?;
     let mut is_free = vec![false; start.len()];
     free.iter().for_each(|&j| is_free[j] = true);
     let folded = fold(

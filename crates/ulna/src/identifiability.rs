@@ -242,10 +242,10 @@ fn two_digits(u: f64) -> String {
 /// Singular directions along which a parameter's uncertainty exceeds what was known of it before.
 fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) -> Vec<WeakDirection> {
     let units = question.units;
-    // a prior says how well a parameter was known
-    let known = |j: usize| {
-        let prior = question.priors[j].map(|(_, u)| u);
-        prior.unwrap_or_else(|| question.known.of(units[question.scene.free[j]]))
+    // what has a prior is never known worse than that
+    let known = |j: usize| match question.priors[j] {
+        Some(_) => f64::INFINITY,
+        None => question.known.of(units[question.scene.free[j]]),
     };
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {

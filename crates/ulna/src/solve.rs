@@ -97,6 +97,21 @@ pub(crate) const ASSUMED_SCATTER_MM: f64 = 0.02;
 /// # Errors
 /// No readings, or interrupted.
 pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: &dyn Monitor) -> Result<Solution> {
+    solve_from(problem, free, None, options, monitor)
+}
+
+/// [`solve`] from other parameters than the problem's own, which stay what is nominal: where a search of another kind
+/// ended, say.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_from(
+    problem: &mut Problem,
+    free: &[usize],
+    from: Option<&[f64]>,
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Solution> {
     if problem.readings() == 0 {
         return Err(Error::NoReadings);
     }
@@ -114,6 +129,9 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
     let can_search = options.search_starts > 0 && geometry.iter().any(|&j| is_zero_offset(problem, j));
 
     let mut here = start.clone();
+    if let Some(from) = from {
+        free.iter().for_each(|&j| here[j] = from[j]);
+    }
     let place = |here: &mut Vec<f64>, x: &[f64]| geometry.iter().zip(x).for_each(|(&j, &value)| here[j] = value);
     let mut descended = None;
     if options.unknown_signs != 0 && can_search {
@@ -129,7 +147,7 @@ pub fn solve(problem: &mut Problem, free: &[usize], options: &Options, monitor: 
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::Asked));
     } else {
         let mut first = Way::new(problem, &geometry, monitor, options_lm, &here, geometry_pins.clone());
-        descended = Some(first.first_descent(gram)?);
+        descended = Some(if from.is_some() { first.descend()? } else { first.first_descent(gram)? });
         here = first.parameters();
     }
     let whole_pins =

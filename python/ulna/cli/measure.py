@@ -28,6 +28,10 @@ def measure(
     ] = None,
     angle: Annotated[str, typer.Option("--angle", help="Of the readings: rad, deg or counts.")] = "rad",
     units: Annotated[str, typer.Option("--units", help="Of the points: mm, m or in.")] = "mm",
+    temperature: Annotated[
+        float | None,
+        typer.Option("--temperature", metavar="C", help="Of all readings, °C, where they do not say it."),
+    ] = None,
     separator: Annotated[
         str | None, typer.Option("--separator", metavar="SIGN", help='CSV: between columns; or "tab".')
     ] = None,
@@ -52,7 +56,8 @@ def measure(
 
     Columns q1 … qn; id and probe are kept where they are. With a result.json as ARM come the standard uncertainties
     u_x, u_y, u_z, from the calibration and, where its study stated it, the encoders' noise; they are left empty where
-    a point depends on what the calibration could not determine, and stderr says why. --json prints one object per
+    a point depends on what the calibration could not determine, and stderr says why. An arm whose links grow with
+    temperature needs a column temperature, or --temperature. --json prints one object per
     point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole.
 
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
@@ -62,7 +67,7 @@ def measure(
     from ulna.measure import measure as measure_to_file
     from ulna.measure import measure_to_stream
 
-    choices: Any = {"angle": angle, "units": units}
+    choices: Any = {"angle": angle, "units": units, "temperature_c": temperature}
     table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}
     layout = Layout.of_options(column, dataset=dataset, **table)
     if out is None:

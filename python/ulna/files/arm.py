@@ -2,53 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag
-from pydantic_core import PydanticCustomError
+from pydantic import Discriminator, Field, Tag
 
 from ulna.errors import UlnaInputError
 from ulna.files.covariance import covariance_of_result
+from ulna.files.joints import JointTable, joint_document, joint_of
 from ulna.files.models import Strict, fill
 from ulna.files.modified import check_modified
 from ulna.files.output import write_file
 from ulna.files.toml import check_format, read_json, read_toml
 from ulna.files.units import Units
 from ulna.frames.modified import Convention, from_modified
-from ulna.model import Arm, Joint, Probe
+from ulna.model import Arm, Probe
 
 WHAT = 'an arm file (TOML, format = "ulna-arm/1") or a result.json'
-
-
-def _no_truth(value: Any) -> Any:
-    """Python takes true for 1."""
-    if isinstance(value, bool):
-        raise PydanticCustomError("sign", "1 or -1")
-    return value
-
-
-class JointTable(Strict):
-    """One joint, from the base to the probe: `turn = sign * encoder - theta0`, then the link to the next axis."""
-
-    theta0: float | None = None
-    """Zero offset. Required, except of the last joint, which carries the probe and has no geometry of its own."""
-    alpha: float | None = None
-    """Twist to the next axis. Required, except of the last joint."""
-    a: float | None = None
-    """Length of the link. Required, except of the last joint."""
-    d: float | None = None
-    """Offset along the axis. Required of a DH joint, except the last."""
-    beta: float | None = None
-    """Required of a Hayati joint, instead of d."""
-    sign: Annotated[Literal[1, -1], BeforeValidator(_no_truth)] = 1
-    model: Literal["dh", "hayati"] = "dh"
-    name: str | None = None
-    limits: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    """Lowest and highest encoder angle, in the file's angle unit."""
-    counts_per_turn: Annotated[float, Field(gt=0)] | None = None
-    """Needed for readings in counts."""
 
 
 class CartesianTip(Strict):
@@ -94,6 +66,10 @@ class ArmFile(Strict):
     units: Units
     convention: Convention = "dh"
     """In the joint tables alpha and a stand after the joint ("dh") or before it ("modified-dh", Craig)."""
+    full_last_link: bool = False
+    """The last joint has a link of its own, to whose end the probes are fixed: four parameters more than needed."""
+    gravity: Annotated[list[float], Field(min_length=3, max_length=3)] | None = None
+    """Where gravity pulls, in the base frame; down along axis 1, [0, 0, -1], where it is not given. For compliance."""
     joint: Annotated[list[JointTable], Field(min_length=2)]
     """One table per encoder, from the base to the probe."""
     probe: Annotated[dict[str, ProbeTable], Field(min_length=1)]
@@ -138,58 +114,36 @@ def arm_of_result(document: dict[str, Any], path: Path) -> Arm:
         raise UlnaInputError(f"{path}: key 'arm' is missing or no table; expected the calibrated arm. Calibrate again.")
     whole = {"format": "ulna-arm/1", "units": {"length": "mm", "angle": "rad"}, **arm}
     found = _arm(fill(ArmFile, whole, path), path)
-    return Arm(found.name, found.joints, found.probes, covariance_of_result(document, found, path))
+    known = covariance_of_result(document, found, path)
+    return dataclasses.replace(found, uncertainty=known.of(found.parameter_names))
 
 
 def _arm(file: ArmFile, path: Path) -> Arm:
     modified = file.convention == "modified-dh"
     if modified:
-        check_modified(file.joint, path)
-    last = 0 if modified else len(file.joint)  # in the modified form the last joint has geometry as well
-    joints = tuple(_joint(table, k, k == last, file.units, path) for k, table in enumerate(file.joint, start=1))
+        check_modified(file, path)
+    # in the modified form the last joint has geometry as well
+    bare = 0 if modified or file.full_last_link else len(file.joint)
+    joints = tuple(joint_of(table, k, k == bare, file.units, path) for k, table in enumerate(file.joint, start=1))
     probes = {name: _probe(name, table, file.units, path) for name, table in file.probe.items()}
     if modified:
         joints, probes, _ = from_modified(joints, probes)
-    return Arm(file.name or path.stem, joints, probes)
+    x, y, z = file.gravity or (0.0, 0.0, -1.0)
+    if not (x or y or z):
+        raise UlnaInputError(f"{path}: key 'gravity': got {file.gravity}, no direction; expected, say, [0, 0, -1].")
+    arm = Arm(file.name or path.stem, joints, probes, full_last_link=file.full_last_link, gravity=(x, y, z))
+    _check_masses(arm, path)
+    return arm
 
 
-def _joint(table: JointTable, number: int, last: bool, units: Units, path: Path) -> Joint:
-    geometry = {"theta0": table.theta0, "alpha": table.alpha, "a": table.a, "d": table.d, "beta": table.beta}
-    missing, foreign = ("d", "beta") if table.model == "dh" else ("beta", "d")
-    for key, value in geometry.items():
-        name = f"joint.{number}.{key}"
-        if last and value:
-            raise UlnaInputError(
-                f"{path}: key '{name}': got {value:g}, but the last joint has no geometry of its own: it is part of "
-                "the probe's tip. Remove the key; turn the tip by theta0 instead (tip = { theta0, r, h })."
-            )
-        if not last and key == foreign and value:
-            other = "hayati" if key == "beta" else "dh"
-            raise UlnaInputError(
-                f"{path}: key '{name}': got {value:g}, but a joint of model '{table.model}' has '{missing}' instead. "
-                f'Remove the key or set model = "{other}".'
-            )
-        if not last and key != foreign and value is None:
-            raise UlnaInputError(
-                f"{path}: key '{name}' is missing; expected theta0, alpha, a and {missing} of every joint but the "
-                "last. Add it (0 where the drawing says nothing)."
-            )
-    if table.limits is not None and not table.limits[0] < table.limits[1]:
+def _check_masses(arm: Arm, path: Path) -> None:
+    """Joints that give way give way to something. Raises UlnaInputError."""
+    gives = next((k for k, joint in enumerate(arm.joints, 1) if joint.effects.compliance_rad_per_nm), None)
+    if gives is not None and not any(joint.effects.mass_kg for joint in arm.joints):
         raise UlnaInputError(
-            f"{path}: key 'joint.{number}.limits': got {table.limits}, expected the lower limit first. Swap them."
+            f"{path}: key 'joint.{gives}.compliance': a joint gives way to the weight of its links, but no joint has a "
+            "mass; expected mass (kg) and centre of each. Add them, or remove the key."
         )
-    return Joint(
-        theta0_rad=(table.theta0 or 0.0) * units.rad,
-        alpha_rad=(table.alpha or 0.0) * units.rad,
-        a_mm=(table.a or 0.0) * units.mm,
-        d_mm=(table.d or 0.0) * units.mm,
-        beta_rad=(table.beta or 0.0) * units.rad,
-        sign=table.sign,
-        model=table.model,
-        name=table.name,
-        limits_rad=None if table.limits is None else (table.limits[0] * units.rad, table.limits[1] * units.rad),
-        counts_per_turn=table.counts_per_turn,
-    )
 
 
 def _probe(name: str, table: ProbeTable, units: Units, path: Path) -> Probe:
@@ -212,26 +166,19 @@ def check_name(name: str, key: str, path: Path) -> None:
 
 def arm_document(arm: Arm) -> dict[str, Any]:
     """The arm with the keys of an arm file, in mm and rad, tips as x, y, z: the `arm` of a result.json."""
-    joints: list[dict[str, Any]] = []
-    for k, joint in enumerate(arm.joints):
-        table: dict[str, Any] = {} if joint.name is None else {"name": joint.name}
-        if k < arm.n - 1:
-            table |= {"theta0": joint.theta0_rad, "alpha": joint.alpha_rad, "a": joint.a_mm}
-            table |= {"beta": joint.beta_rad} if joint.model == "hayati" else {"d": joint.d_mm}
-        table |= {"sign": joint.sign}
-        if joint.model != "dh":
-            table |= {"model": joint.model}
-        if joint.limits_rad is not None:
-            table |= {"limits": list(joint.limits_rad)}
-        if joint.counts_per_turn is not None:
-            table |= {"counts_per_turn": joint.counts_per_turn}
-        joints.append(table)
+    bare = None if arm.full_last_link else arm.n - 1
+    joints = [joint_document(joint, k == bare) for k, joint in enumerate(arm.joints)]
     probes: dict[str, Any] = {}
     for name, probe in arm.probes.items():
         probes[name] = {"tip": {"x": probe.x_mm, "y": probe.y_mm, "z": probe.z_mm}}
         if probe.ball_mm is not None:
             probes[name]["ball"] = probe.ball_mm
-    return {"name": arm.name, "joint": joints, "probe": probes}
+    head: dict[str, Any] = {"name": arm.name}
+    if arm.full_last_link:
+        head["full_last_link"] = True
+    if arm.gravity != (0.0, 0.0, -1.0):
+        head["gravity"] = list(arm.gravity)
+    return {**head, "joint": joints, "probe": probes}
 
 
 def arm_toml(arm: Arm) -> str:
@@ -242,6 +189,7 @@ def arm_toml(arm: Arm) -> str:
         f"name = {_toml(arm.name)}",
         'units = { length = "mm", angle = "rad" }',
     ]
+    lines += [f"{key} = {_toml(document[key])}" for key in ("full_last_link", "gravity") if key in document]
     for table in document["joint"]:
         lines += ["", "[[joint]]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
     for name, table in document["probe"].items():
@@ -270,6 +218,8 @@ def _toml(value: Any) -> str:
         return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda match: f"\\u{ord(match[0]):04x}", escaped) + '"'
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, list):
         return "[" + ", ".join(_toml(inner) for inner in value) + "]"
     return repr(float(value)) if isinstance(value, float) else repr(int(value))

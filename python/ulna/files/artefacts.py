@@ -6,20 +6,18 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-import polars as pl
 from pydantic import Discriminator, Field, Tag
 
 from ulna.errors import UlnaInputError, nearest
 from ulna.files.arm import check_name
-from ulna.files.features import COLUMNS, open_features
+from ulna.files.features import COLUMNS, open_features, uncertainties
 from ulna.files.layout import TableKeys
 from ulna.files.models import Strict
 from ulna.files.table import file_sha256, read_table
 from ulna.files.units import Units
 from ulna.study import Artefact, InputFile
 
-KINDS = ("bar", "seat", "points", "length")
-LATER_KINDS = ("sphere", "plane")
+KINDS = ("bar", "seat", "points", "length", "sphere", "plane")
 
 Positive = Annotated[float, Field(gt=0)]
 Uncertainty = Annotated[float, Field(ge=0)]
@@ -32,6 +30,8 @@ class BarTable(Strict):
     length: Positive
     u: Uncertainty = 0.0
     """Standard uncertainty of the length."""
+    fit: bool = False
+    """Whether the length may change within its uncertainty; else it stays, and its uncertainty counts."""
 
 
 class SeatTable(Strict):
@@ -47,7 +47,28 @@ class LengthTable(Strict):
     length: Positive | None = None
     """Fills the column `length` where the file has none."""
     u: Uncertainty = 0.0
-    """Standard uncertainty of each length."""
+    """Standard uncertainty of each length, common to all of them."""
+    fit: bool = False
+    """Whether all lengths may change by one amount within it."""
+
+
+class SphereTable(Strict):
+    """A ball, or a hollow, touched on its surface; its place is unknown."""
+
+    kind: Literal["sphere"]
+    diameter: Positive
+    u: Uncertainty = 0.0
+    """Standard uncertainty of the diameter."""
+    fit: bool = False
+    """Whether the diameter is fitted: within its uncertainty, or freely where none is stated."""
+    inside: bool = False
+    """Whether it is a hollow, touched from within."""
+
+
+class PlaneTable(Strict):
+    """A flat touched on its surface; its place is unknown."""
+
+    kind: Literal["plane"]
 
 
 def _features_kind(features: Any) -> str:
@@ -74,6 +95,8 @@ class PointsTable(Strict):
     """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
     u: Uncertainty | None = None
     """Standard uncertainty of each coordinate."""
+    fit: bool = False
+    """Whether features may move within their uncertainty; else they stay, and it counts."""
 
 
 def _kind(table: Any) -> str:
@@ -85,7 +108,9 @@ ArtefactTable = Annotated[
     Annotated[BarTable, Tag("<bar>")]
     | Annotated[SeatTable, Tag("<seat>")]
     | Annotated[PointsTable, Tag("<points>")]
-    | Annotated[LengthTable, Tag("<length>")],
+    | Annotated[LengthTable, Tag("<length>")]
+    | Annotated[SphereTable, Tag("<sphere>")]
+    | Annotated[PlaneTable, Tag("<plane>")],
     Discriminator(_kind),
 ]
 
@@ -100,11 +125,6 @@ def check_kinds(document: dict[str, Any], path: Path) -> None:
         key = f"{path}: key 'artefact.{name}.kind'"
         if kind is None:
             raise UlnaInputError(f"{key} is missing; expected one of {', '.join(KINDS)}. Add it.")
-        if kind in LATER_KINDS:
-            raise UlnaInputError(
-                f"{key}: got '{kind}', which comes with a later version of Ulna; expected one of {', '.join(KINDS)} "
-                "for now."
-            )
         if kind not in KINDS:
             raise UlnaInputError(f"{key}: got {kind!r}; expected one of {', '.join(KINDS)}.{nearest(str(kind), KINDS)}")
 
@@ -114,28 +134,48 @@ def make_artefact(
 ) -> tuple[Artefact, InputFile | None]:
     """An artefact in mm, and the features file that it was made from, if any. Raises UlnaInputError."""
     check_name(name, f"artefact.{name}", path)
+    _check_fit(name, table, path)
     if isinstance(table, BarTable):
         length_mm = table.length * units.mm
         ends = {"A": (0.0, 0.0, 0.0), "B": (length_mm, 0.0, 0.0)}
-        return Artefact(name, "bar", ends, length_mm, table.u * units.mm), None
+        return Artefact(name, "bar", ends, length_mm, table.u * units.mm, fitted=table.fit), None
     if isinstance(table, SeatTable):
         return Artefact(name, "seat", {"seat": (0.0, 0.0, 0.0)}), None
+    if isinstance(table, PlaneTable):
+        return Artefact(name, "plane", {}), None
+    if isinstance(table, SphereTable):
+        u_mm, diameter_mm = table.u * units.mm, table.diameter * units.mm
+        ball = Artefact(name, "sphere", {}, None, u_mm, diameter_mm=diameter_mm, inside=table.inside, fitted=table.fit)
+        return ball, None
     if isinstance(table, LengthTable):
         distance_mm = None if table.length is None else table.length * units.mm
-        return Artefact(name, "length", {}, distance_mm, table.u * units.mm), None
+        return Artefact(name, "length", {}, distance_mm, table.u * units.mm, fitted=table.fit), None
     if table.features_format is not None and not isinstance(table.features, str):
         raise UlnaInputError(
             f"{path}: key 'artefact.{name}.features_format': says how a file is written, but the key 'features' names "
             "none. Remove it, or name the file of the features."
         )
     if table.features is None:  # own_points.py makes them of the readings
-        return Artefact(name, "points", {}, None, (table.u or 0.0) * units.mm, table.frame), None
+        own = Artefact(name, "points", {}, None, (table.u or 0.0) * units.mm, table.frame, fitted=table.fit)
+        return own, None
     if isinstance(table.features, str):
         return _from_file(name, table, path.parent / table.features, units, path, warnings)
     for feature in table.features:
         check_name(feature, f"artefact.{name}.features.{feature}", path)
     features = {key: (x * units.mm, y * units.mm, z * units.mm) for key, (x, y, z) in table.features.items()}
-    return Artefact(name, "points", features, None, (table.u or 0.0) * units.mm, table.frame), None
+    u_mm = (table.u or 0.0) * units.mm
+    return Artefact(name, "points", features, None, u_mm, table.frame, fitted=table.fit), None
+
+
+def _check_fit(name: str, table: ArtefactTable, path: Path) -> None:
+    """What is fitted needs an uncertainty to be fitted within, but a sphere's diameter. Raises UlnaInputError."""
+    fit = getattr(table, "fit", False)
+    in_file = isinstance(table, PointsTable) and not isinstance(table.features, dict)
+    if fit and not isinstance(table, SphereTable) and not in_file and not getattr(table, "u", 0.0):
+        raise UlnaInputError(
+            f"{path}: key 'artefact.{name}.fit': true, but its uncertainty u is not stated; expected the standard "
+            "uncertainty that it may move within. Add u, or remove the key."
+        )
 
 
 def _from_file(
@@ -164,25 +204,14 @@ def _from_file(
     xyz_mm = (frame.select("x", "y", "z").to_numpy() * units.mm).tolist()
     features = {feature: (x, y, z) for feature, (x, y, z) in zip(names, xyz_mm, strict=True)}
     u_mm = (table.u or 0.0) * units.mm
+    each: tuple[float, ...] | None = None
     if "u" in frame.columns:
-        u_mm = _one_uncertainty(file, frame["u"], warnings) * units.mm
-    artefact = Artefact(name, "points", features, None, u_mm, table.frame)
-    return artefact, InputFile(file, file_sha256(file), len(frame))
-
-
-def _one_uncertainty(file: Path, u: pl.Series, warnings: list[str]) -> float:
-    """The column `u` as one number, in the unit of the file: the root of its mean square."""
-    values = u.to_numpy()
-    if (values < 0).any():
-        row = int(np.argmax(values < 0))
+        each = tuple((uncertainties(header, frame, np.arange(1, len(frame) + 1)) * units.mm).tolist())
+    if table.fit and not (u_mm or (each and any(each))):
         raise UlnaInputError(
-            f"{file}: row {row + 1}, column 'u': got {values[row]:g}, expected a standard uncertainty of 0 or more. "
-            "Correct it."
+            f"{path}: key 'artefact.{name}.fit': true, but neither the key 'u' nor a column 'u' of {file} says how "
+            "uncertain its features are; expected the standard uncertainty that they may move within. Add it, or "
+            "remove the key."
         )
-    mean = float(np.sqrt(np.mean(values**2)))
-    if np.ptp(values) > 1e-12 * mean:
-        warnings.append(
-            f"{file}: column 'u' goes from {values.min():g} to {values.max():g}; all features are weighted alike, "
-            f"with its root mean square {mean:g}."
-        )
-    return mean
+    artefact = Artefact(name, "points", features, None, u_mm, table.frame, each, fitted=table.fit)
+    return artefact, InputFile(file, file_sha256(file), len(frame))

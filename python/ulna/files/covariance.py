@@ -19,7 +19,8 @@ _SLACK = 1e-6
 
 
 def covariance_of_result(document: dict[str, Any], arm: Arm, path: Path) -> ParameterCovariance:
-    """The keys `covariance` and `identifiability.lost` of a result document. Raises UlnaInputError."""
+    """The keys `covariance` and `identifiability.lost` of a result document: of all its parameters, the dimensions of
+    artefacts too. Raises UlnaInputError."""
     try:
         names = list(document["covariance"]["names"])
         rows = document["covariance"]["matrix"]
@@ -93,7 +94,7 @@ def _check_direction(direction: Any, arm: Arm, path: Path, key: str) -> None:
 
 
 def _known(name: Any, arm: Arm, path: Path, key: str) -> None:
-    if name not in arm.parameter_names:
+    if name not in arm.parameter_names and not str(name).startswith("artefact."):
         _damaged(
             path,
             key,

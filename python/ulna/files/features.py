@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
 from ulna.errors import UlnaInputError
 from ulna.files.columns import remark_strange
 from ulna.files.header import Header
@@ -28,3 +32,15 @@ def open_features(file: Path, keys: TableKeys | None, key: str, study: Path, rem
             )
     remark_strange(header, COLUMNS, COLUMNS, remarks)
     return header
+
+
+def uncertainties(header: Header, frame: pl.DataFrame, row: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The column `u`, (N,) in the unit of the file; `row` says where each stands in it. Raises UlnaInputError."""
+    u: NDArray[np.float64] = frame["u"].to_numpy()
+    if (u < 0).any():
+        first = int(np.argmax(u < 0))
+        raise UlnaInputError(
+            f"{header.path}: {header.at(int(row[first]), 'u')}: got {u[first]:g}, expected a standard uncertainty of 0 "
+            "or more. Correct it."
+        )
+    return u

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ulna.errors import UlnaInputError
 
 if TYPE_CHECKING:
-    from ulna.files.arm import JointTable
+    from ulna.files.arm import ArmFile
 
 
-def check_modified(joints: Sequence[JointTable], path: Path) -> None:
+def check_modified(file: ArmFile, path: Path) -> None:
     """Every joint has theta0, alpha, a, d; none is a Hayati joint; the base stands on axis 1. Raises UlnaInputError."""
-    for k, joint in enumerate(joints, start=1):
+    if file.full_last_link:
+        raise UlnaInputError(
+            f"{path}: key 'full_last_link': goes with convention = \"dh\" only; expected no such key in a modified "
+            "table, whose last row becomes part of the tip. Remove it, or write the arm in the other form."
+        )
+    for k, joint in enumerate(file.joint, start=1):
+        if joint.mass:
+            raise UlnaInputError(
+                f"{path}: key 'joint.{k}.mass': a centre of mass is told in the frame after a link, which a modified "
+                'table does not have; expected masses with convention = "dh" only. Write the arm in that form.'
+            )
         if joint.model == "hayati" or joint.beta:
             got = "model': got 'hayati'" if joint.model == "hayati" else f"beta': got {joint.beta:g}"
             raise UlnaInputError(
@@ -28,7 +37,7 @@ def check_modified(joints: Sequence[JointTable], path: Path) -> None:
                     f"{path}: key 'joint.{k}.{key}' is missing; expected theta0, alpha, a and d of every joint, with "
                     'convention = "modified-dh" of the last one too. Add it (0 where the table says nothing).'
                 )
-    first = joints[0]
+    first = file.joint[0]
     for key, value in (("alpha", first.alpha), ("a", first.a)):
         if value:
             # A remark would do for lengths, but coordinates in the base frame would quietly be others.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
 from ulna.files.columns import Source
+from ulna.files.features import uncertainties
 from ulna.files.header import Header
 from ulna.files.units import Units
 from ulna.study import Artefact, Readings
@@ -56,42 +57,27 @@ def own_points(
     for name, (x, y, z) in zip(names, xyz_mm, strict=True):
         features[name] = (x, y, z)  # a name stands twice only where one reading does: see check_ids
     numbers = {name: k for k, name in enumerate(features)}
-    u_mm = _u_mm(frame, row, artefact, header, source, units, remarks)
-    made = dataclasses.replace(artefact, features=features, u_mm=u_mm)
+    each = _u_mm(frame, row, artefact, header, source, units)
+    of_feature: tuple[float, ...] | None = None
+    if each is not None:
+        of_feature = tuple(dict(zip(names, each.tolist(), strict=True)).values())
+    made = dataclasses.replace(artefact, features=features, feature_u_mm=of_feature)
     return made, np.array([numbers[name] for name in names], dtype=np.int64)
 
 
 def _u_mm(
-    frame: pl.DataFrame,
-    row: I64,
-    artefact: Artefact,
-    header: Header,
-    source: Source,
-    units: Units,
-    remarks: list[str],
-) -> float:
-    """The column `u` as one number: the root of its mean square."""
+    frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, units: Units
+) -> NDArray[np.float64] | None:
+    """The column `u`, (N,) mm, where there is one."""
     if "u" not in frame.columns:
-        return artefact.u_mm
+        return None
     if artefact.u_mm:
         raise UlnaInputError(
             f"{source.study}: key 'artefact.{artefact.name}.u': got {artefact.u_mm / units.mm:g}, but {header.path} "
             "has a column 'u' as well. Remove one of them."
         )
-    u = frame["u"].to_numpy()
-    if (u < 0).any():
-        first = int(np.argmax(u < 0))
-        raise UlnaInputError(
-            f"{header.path}: {header.at(int(row[first]), 'u')}: got {u[first]:g}, expected a standard uncertainty of 0 "
-            "or more. Correct it."
-        )
-    mean = float(np.sqrt(np.mean(u**2)))
-    if np.ptp(u) > 1e-12 * mean:
-        remarks.append(
-            f"{header.path}: {header.named('u')} goes from {u.min():g} to {u.max():g}; all points are weighted alike, "
-            f"with its root mean square {mean:g}."
-        )
-    return mean * units.mm
+    u_mm: NDArray[np.float64] = uncertainties(header, frame, row) * units.mm
+    return u_mm
 
 
 def joined_points(own: list[Readings], files: list[Path]) -> tuple[Artefact, list[I64]]:
@@ -100,19 +86,20 @@ def joined_points(own: list[Readings], files: list[Path]) -> tuple[Artefact, lis
     files: by `Readings.file`. A name that stands for another point in an earlier file gets the file's name before it.
     """
     features: dict[str, Place] = {}
+    u_mm: dict[str, float] = {}
     feature: list[I64] = []
     for part in own:
+        each = part.artefact.feature_u_mm or [part.artefact.u_mm] * len(part.artefact.features)
         file = files[int(part.file[0])].name
         called: dict[str, str] = {}
-        for name, place in part.artefact.features.items():
+        for (name, place), u in zip(part.artefact.features.items(), each, strict=True):
             new, number = name, 1
             while features.setdefault(new, place) != place:
                 new = f"{file}:{name}" if number == 1 else f"{file}:{name}:{number}"
                 number += 1
             called[name] = new
+            u_mm.setdefault(new, u)
         numbers = {name: k for k, name in enumerate(features)}
         order = np.array([numbers[new] for new in called.values()], dtype=np.int64)
         feature.append(order[part.feature])
-    counts = [len(part) for part in own]
-    u_mm = float(np.sqrt(np.average([part.artefact.u_mm**2 for part in own], weights=counts)))
-    return dataclasses.replace(own[0].artefact, features=features, u_mm=u_mm), feature
+    return dataclasses.replace(own[0].artefact, features=features, feature_u_mm=tuple(u_mm.values())), feature

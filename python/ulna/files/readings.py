@@ -19,7 +19,7 @@ from ulna.files.rows import Rows, Selection
 from ulna.files.table import file_sha256, read_header, read_table
 from ulna.files.units import RAD_PER, Units
 from ulna.model import Arm
-from ulna.study import Artefact, InputFile, Readings
+from ulna.study import SURFACES, Artefact, InputFile, Readings
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -174,7 +174,7 @@ def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, 
 def _features(
     frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, remarks: list[str]
 ) -> I64:
-    if artefact.kind == "length":
+    if artefact.kind == "length" or artefact.kind in SURFACES:
         return np.zeros(len(row), dtype=np.int64)
     known = list(artefact.features)
     return each_row(

@@ -11,7 +11,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from ulna.files.arm import CartesianTip, JointTable
+from ulna.files.arm import CartesianTip
+from ulna.files.joints import JointTable
 
 
 class Open(BaseModel):
@@ -31,20 +32,31 @@ class ResultArm(Open):
     """The calibrated arm, with the keys of an arm file, in mm and rad."""
 
     name: str
+    full_last_link: bool = False
+    gravity: list[float] | None = None
     joint: Annotated[list[JointTable], Field(min_length=2)]
     probe: Annotated[dict[str, ResultProbe], Field(min_length=1)]
 
 
+class PriorEntry(Open):
+    """What was known of a parameter before any reading, in its unit."""
+
+    value: float
+    u: float
+
+
 class ParameterEntry(Open):
-    """One parameter before and after."""
+    """One parameter before and after: of the arm, or a dimension of an artefact that was fitted."""
 
     name: str
-    unit: Literal["rad", "mm"]
+    unit: Literal["rad", "mm", "1/K", "rad/(N m)"]
     start: float
     value: float
     u: float | None
     """Standard uncertainty; null where held, not determined or not to be estimated."""
     status: Literal["fitted", "held", "not-determined"]
+    prior: PriorEntry | None = None
+    """Where the fit used one."""
 
 
 class CovarianceEntry(Open):
@@ -73,6 +85,8 @@ class IdentifiabilityEntry(Open):
     singular_values: list[float]
     """Of the Jacobian with columns scaled to unit norm, placements eliminated; descending."""
     lost: list[LostEntry]
+    from_prior: list[str] = Field(default_factory=list)
+    """Parameters of which the readings say next to nothing."""
 
 
 class FitEntry(Open):
@@ -89,10 +103,19 @@ class FitEntry(Open):
     degrees_of_freedom: int
     chi2_per_dof: float | None = None
     """Only with stated noise; 1 where the noise is right."""
+    undecided_signs: list[list[int]] = Field(default_factory=list)
+    """Sets of joints, from 1, whose encoders may all count the other way."""
+    method: Literal["lm", "annealing", "evolution"] = "lm"
+    box_evaluations: int = 0
+    """Of the search of a box, where the method asks for one."""
+    loss: Literal["none", "huber", "cauchy", "tukey"] = "none"
+    scatter: dict[str, float] = Field(default_factory=dict)
+    """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
 
 
 class ResidualEntry(Open):
-    """One reading: x, y, z of tip minus feature in the base frame, or for a length row length_mm."""
+    """One reading: x, y, z of tip minus feature in the base frame, for a length row length_mm, for a touch of a surface
+    distance_mm."""
 
     row: int
     """Data row of the file, from 1."""
@@ -105,9 +128,46 @@ class ResidualEntry(Open):
     y_mm: float | None = None
     z_mm: float | None = None
     length_mm: float | None = None
+    distance_mm: float | None = None
     norm_mm: float
     weight: float
     """Root of the reading's weight, 1/mm; 1 where no noise is stated."""
+    times_scatter: float | None = None
+    """How far off, in units of the scatter of its artefact's readings."""
+    outlier: bool | None = None
+    """Whether farther off than one normal reading in ten thousand."""
+    counted: float | None = None
+    """What a loss let it count, 0 to 1."""
+
+
+class OutlierEntry(Open):
+    """A reading far off the rest of its artefact's."""
+
+    row: int
+    file: str
+    artefact: str
+    placement: str
+    feature: str | None = None
+    probe: str
+    norm_mm: float
+    times_scatter: float
+    counted: float | None = None
+
+
+class ExtraEntry(Open):
+    """A block beyond geometry, judged by readings left out."""
+
+    extra: Literal["encoder-harmonics", "link-expansion", "compliance"]
+    figure: str
+    """Which figure, mean over the groups left out."""
+    without_mm: float
+    with_mm: float
+    better_by_mm: float
+    u_better_by_mm: float | None
+    """Standard error over the groups."""
+    groups: int
+    by: str
+    verdict: Literal["earned", "undecided", "not-earned"]
 
 
 class Figures(Open):
@@ -122,6 +182,10 @@ class Figures(Open):
     length_error_max_abs_mm: float | None = None
     coordinate_error_mean_mm: float | None = None
     """Distance to the reference coordinates after the best rigid fit."""
+    form_mm: float | None = None
+    """Spread of distances from the least-squares sphere or plane; the largest of all placements."""
+    diameter_error_mm: float | None = None
+    """Of the least-squares sphere, signed; the largest in size of all placements."""
 
 
 class ArtefactEntry(Figures):
@@ -149,6 +213,10 @@ class ResultFile(Open):
     covariance: CovarianceEntry
     identifiability: IdentifiabilityEntry
     fit: FitEntry
+    outliers: list[OutlierEntry] = Field(default_factory=list)
+    """Readings far off the rest, the farthest first."""
+    extras: list[ExtraEntry] = Field(default_factory=list)
+    """Blocks beyond geometry, each judged by readings left out."""
     artefacts: list[ArtefactEntry]
     provenance: ProvenanceEntry
     residuals: list[ResidualEntry]

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, get_args
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
+from ulna.effects import Extra
 from ulna.errors import InputWarning, UlnaInputError, nearest
 from ulna.files.arm import load_arm_and_hash
 from ulna.files.artefacts import ArtefactTable, check_kinds, make_artefact
@@ -22,7 +23,9 @@ from ulna.files.rows import Rows
 from ulna.files.toml import check_format, read_toml
 from ulna.files.units import Units
 from ulna.model import Arm
-from ulna.study import Artefact, FitOptions, InputFile, Noise, Readings, Study
+from ulna.options import with_options
+from ulna.parameters import check_patterns
+from ulna.study import Artefact, FitOptions, InputFile, Loss, Method, Noise, Prior, Readings, Study
 
 WHAT = 'a study file (TOML, format = "ulna-study/1")'
 
@@ -47,6 +50,24 @@ class NoiseTable(Strict):
     """Of a touch, per coordinate, in the study's length unit."""
 
 
+class PriorTable(Strict):
+    """What is known of parameters before any reading."""
+
+    value: float | None = None
+    """The arm file's, or the artefact's, where it is not given."""
+    u: Positive
+    """Standard deviation."""
+
+
+def _prior_kind(prior: Any) -> str:
+    return "<table>" if isinstance(prior, dict | PriorTable) else "<deviation>"
+
+
+PriorValue = Annotated[
+    Annotated[Positive, Tag("<deviation>")] | Annotated[PriorTable, Tag("<table>")], Discriminator(_prior_kind)
+]
+
+
 class FitTable(Strict):
     """What is fitted, and how."""
 
@@ -54,10 +75,29 @@ class FitTable(Strict):
     """Not fitted: shell-style patterns over parameter names."""
     free: list[str] = Field(default_factory=lambda: ["*"])
     """What may be fitted; hold wins."""
-    loss: Literal["none", "huber", "cauchy", "tukey"] = "none"
+    loss: Loss = "none"
+    """How residuals count that are far off: by their squares (none), or less."""
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
-    extras: list[Literal["encoder-harmonics", "link-expansion", "compliance"]] = Field(default_factory=list)
+    extras: list[Extra] = Field(default_factory=list)
+    """Blocks of the model beyond geometry; each is judged by readings left out."""
+    harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
+    """Orders of the encoders' harmonics, where extras ask for them."""
+    prior: dict[str, PriorValue] = Field(default_factory=dict)
+    """Pattern of parameter names = standard deviation around the arm file's value, or { value, u }, in the study's
+    units."""
+    judge_extras: bool = True
+    """Whether extras are judged by cross-validation; false saves its time."""
+    method: Method = "lm"
+    """"annealing" or "evolution": first a search of a box around the start without derivatives."""
+    budget: Annotated[int, Field(ge=100, le=1_000_000_000)] = 100_000
+    """Most evaluations of the sum of squares in that search."""
+    box_length: Positive | None = None
+    """Half the width of the box for lengths (default 100 mm)."""
+    box_angle: Positive | None = None
+    """For twists (default 0.2 rad)."""
+    box_offset: Positive | None = None
+    """For zero offsets (default 1 rad; with start "search" the whole turn)."""
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
     max_iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 200
     known_length: Positive | None = None
@@ -91,7 +131,7 @@ def load_study(path: Path, rows: Rows = "fit") -> Study:
     split = _check_rows(file, path, rows)
     arm_path = path.parent / file.arm
     arm, arm_digest = load_arm_and_hash(arm_path)
-    fit = _fit(file.fit, file.units, path)
+    fit = _fit(file.fit, file.units)
     noise = _noise(file.noise, file.units, arm, path)
     remarks: list[str] = []
     files = [InputFile(path, digest, 0), InputFile(arm_path, arm_digest, 0)]
@@ -102,7 +142,8 @@ def load_study(path: Path, rows: Rows = "fit") -> Study:
             files.append(features_file)
     readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
     study = Study(path, arm, readings, noise, fit, files, remarks, rows if split else None)
-    study.hold_mask()  # a pattern that matches nothing is told now, not after the work
+    with_options(study)  # what cannot be asked is told now, not after the work
+    check_patterns(study)
     for remark in remarks:
         python_warnings.warn(remark, InputWarning, stacklevel=3)
     return study
@@ -179,26 +220,35 @@ def _noise(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Nois
     return Noise(encoder_rad, None if table.seat is None else table.seat * units.mm)
 
 
-def _fit(table: FitTable, units: Units, path: Path) -> FitOptions:
-    if table.loss != "none":
-        raise UlnaInputError(
-            f"{path}: key 'fit.loss': got '{table.loss}', which comes with a later version of Ulna; expected 'none' "
-            "for now. Remove the key."
-        )
-    if table.extras:
-        raise UlnaInputError(
-            f"{path}: key 'fit.extras': got '{table.extras[0]}', which comes with a later version of Ulna; expected "
-            "an empty list for now. Remove the key."
-        )
+def _fit(table: FitTable, units: Units) -> FitOptions:
     usual = FitOptions()
+
+    def prior(given: float | PriorTable) -> Prior:
+        u, value = (given.u, given.value) if isinstance(given, PriorTable) else (given, None)
+        return Prior(u, value, units.mm, units.rad)
+
+    def mm(given: float | None, usually: float) -> float:
+        return usually if given is None else given * units.mm
+
+    def rad(given: float | None, usually: float) -> float:
+        return usually if given is None else given * units.rad
+
     return FitOptions(
         hold=list(table.hold),
         free=list(table.free),
         loss=table.loss,
         start=table.start,
         extras=list(table.extras),
+        harmonics=list(table.harmonics),
+        prior={pattern: prior(given) for pattern, given in table.prior.items()},
+        judge_extras=table.judge_extras,
+        method=table.method,
+        budget=table.budget,
+        box_length_mm=mm(table.box_length, usual.box_length_mm),
+        box_angle_rad=rad(table.box_angle, usual.box_angle_rad),
+        box_offset_rad=rad(table.box_offset, usual.box_offset_rad),
         seed=table.seed,
         max_iterations=table.max_iterations,
-        known_length_mm=usual.known_length_mm if table.known_length is None else table.known_length * units.mm,
-        known_angle_rad=usual.known_angle_rad if table.known_angle is None else table.known_angle * units.rad,
+        known_length_mm=mm(table.known_length, usual.known_length_mm),
+        known_angle_rad=rad(table.known_angle, usual.known_angle_rad),
     )

@@ -16,8 +16,8 @@ import polars as pl
 
 from ulna.errors import UlnaInputError
 from ulna.files.arm import check_name
-from ulna.files.cells import Header
 from ulna.files.checks import MOST_RAD
+from ulna.files.header import Header
 from ulna.files.table import read_header, read_table
 from ulna.files.units import MM_PER, RAD_PER
 from ulna.model import Joint

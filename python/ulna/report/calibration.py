@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import RenderableType
 from rich.text import Text
 
 from ulna.probes import ProbeView
 from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
+from ulna.report.extras import judged_extras
 from ulna.report.figures import before_after
 from ulna.report.identification import determined_in_words, directions
+from ulna.report.outliers import far_off
 from ulna.report.tables import table
 from ulna.result import FitSummary, Parameter, Result
 
@@ -22,6 +26,8 @@ _ENDINGS = {
     "poor-minimum": "NOT converged: the fit ended in a poor minimum, and so did the search",
 }
 
+_METHODS = {"annealing": "simulated annealing", "evolution": "an evolutionary search"}
+
 
 def calibration_report(result: Result) -> list[RenderableType]:
     """All of `ulna calibrate`."""
@@ -31,12 +37,17 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts += ["", before_after("Before and after, on the fitted readings", result.before, result.after, [rms])]
     parts += ["", parameter_table(result.parameters)]
     parts += ["", probe_table(result.probes)]
-    return parts + directions(result.identifiability)
+    parts += directions(result.identifiability)
+    return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
 
 
 def ending(fit: FitSummary) -> str:
     """How the fit ended, and how it got there."""
     text = f"{_ENDINGS.get(fit.termination, fit.termination)} ({fit.iterations} iterations)."
+    if fit.method != "lm":
+        text += (
+            f" Before that {_METHODS[fit.method]} of the box around the arm file ({fit.box_evaluations} evaluations)."
+        )
     if fit.searched_starts:
         reason = {
             "asked": "as asked",
@@ -45,16 +56,27 @@ def ending(fit: FitSummary) -> str:
         text += f" Searched {fit.searched_starts} starts, {reason}."
     if fit.folded:
         text += f" Folded to the twin nearest the given arm: {', '.join(fit.folded)}."
+    for joints in fit.undecided_signs:
+        text += (
+            f" Which way the encoder{'s' * (len(joints) > 1)} of joint{'s' * (len(joints) > 1)} {_and(joints)} "
+            f"count{'s' * (len(joints) == 1)}, these readings do not tell: the opposite fits as well."
+        )
     return text
 
 
+def _and(numbers: Sequence[int]) -> str:
+    *most, last = [str(number) for number in numbers]
+    return f"{', '.join(most)} and {last}" if most else last
+
+
 def equations(fit: FitSummary) -> str:
-    """The counts that tell whether the fit can be trusted."""
+    """The counts that tell whether the fit can be trusted, and how the readings counted."""
     placements = f" and {fit.placement_unknowns} unknowns of placements" if fit.placement_unknowns else ""
     chi2 = "" if fit.chi2_per_dof is None else f", chi² per degree {fit.chi2_per_dof:.3f} (1: the stated noise fits)"
     return (
         f"{fit.readings} readings, {fit.observations} equations{placements}, "
         f"{fit.degrees_of_freedom} degree{'s' * (fit.degrees_of_freedom != 1)} of freedom{chi2}."
+        f"{'' if fit.loss == 'none' else f' Readings far off count less (loss: {fit.loss}).'}"
     )
 
 
@@ -69,8 +91,8 @@ def where_to_look(result: Result) -> str:
         f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
         f"(artefact '{worst['artefact']}', placement '{worst['placement']}'); residuals.csv has them all."
     )
-    # length rows have no feature, and it does not matter which standing they are of
-    touches = residuals.filter(residuals["feature"].is_not_null())
+    # of length rows it does not matter which standing they are of
+    touches = residuals.filter(residuals["length_mm"].is_null())
     for (artefact,), rows in touches.group_by("artefact", maintain_order=True):
         if rows["placement"].n_unique() == 1 and len(rows) > 2:
             hints.append(
@@ -81,15 +103,17 @@ def where_to_look(result: Result) -> str:
 
 
 def parameter_table(parameters: list[Parameter]) -> RenderableType:
-    """Every parameter: start, value, standard uncertainty, unit, status."""
+    """Every parameter: start, value, standard uncertainty, that of its prior where there are any, unit, status."""
+    with_priors = any(row.prior is not None for row in parameters)
     rows = []
     for row in parameters:
         places = decimals(row.u, row.unit)
-        rows.append(
-            (row.name, fixed(row.start, places), fixed(row.value, places), uncertainty(row.u), row.unit, row.status)
-        )
-    made = table("Parameters (u: standard uncertainty)", ("", "start", "value", "u", "unit", "status"), rows)
-    made.columns[4].justify = made.columns[5].justify = "left"
+        prior = [uncertainty(None if row.prior is None else row.prior["u"])] if with_priors else []
+        values = fixed(row.start, places), fixed(row.value, places), uncertainty(row.u)
+        rows.append([row.name, *values, *prior, row.unit, row.status])
+    heads = ["", "start", "value", "u", *(["prior u"] if with_priors else []), "unit", "status"]
+    made = table("Parameters (u: standard uncertainty)", heads, rows)
+    made.columns[-2].justify = made.columns[-1].justify = "left"
     return made
 
 

@@ -17,13 +17,17 @@ _SHOWN = {
     "seat_scatter_mean_mm": "seat",
     "length_error_mean_abs_mm": "length",
     "coordinate_error_mean_mm": "coord.",
+    "form_mm": "form",
 }
+
+#: as many as a terminal of 80 columns has room for; the table over all groups has every figure
+_MOST_FIGURES = 3
 
 
 def cross_validation_report(found: CrossValidation) -> list[RenderableType]:
     """Per group left out, then over all groups."""
     present = {name for group in found.groups for name in (*group.before, *group.after)}
-    columns = [name for name in _SHOWN if name in present]
+    columns = [name for name in _SHOWN if name in present][:_MOST_FIGURES]
     heads = ["left out", "readings"]
     for name in columns:
         heads += [f"{_SHOWN[name]}\nbefore\nmm", "after\nmm"]

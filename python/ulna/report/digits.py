@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-_MOST_DECIMALS = {"mm": 6, "rad": 9}
-_PLAIN_DECIMALS = {"mm": 4, "rad": 6}
-"""Where no uncertainty is known: 0.1 µm and 1 µrad."""
+_MOST_DECIMALS = {"mm": 6, "rad": 9, "1/K": 9, "rad/(N m)": 9}
+_PLAIN_DECIMALS = {"mm": 4, "rad": 6, "1/K": 7, "rad/(N m)": 7}
+"""Where no uncertainty is known: 0.1 µm, 1 µrad, 0.1 µm/(m K), 0.1 µrad/(N m)."""
 
 
 def decimals(u: float | None, unit: str) -> int:

@@ -13,7 +13,7 @@ from ulna.report.tables import table
 
 MOST_ROWS = 24
 
-_WORDS = {
+WORDS = {
     "seat_scatter_mean_mm": "seat scatter, mean",
     "seat_scatter_rms_mm": "seat scatter, rms",
     "seat_scatter_max_mm": "seat scatter, max",
@@ -24,6 +24,8 @@ _WORDS = {
     "coordinate_error_mean_mm": "coordinate error, mean",
     "coordinate_error_rms_mm": "coordinate error, rms",
     "coordinate_error_max_mm": "coordinate error, max",
+    "form_mm": "form, largest",
+    "diameter_error_mm": "diameter error, largest",
 }
 _SHORT = {
     "seat_scatter_mean_mm": "seat\nmean",
@@ -33,6 +35,8 @@ _SHORT = {
     "length_error_max_abs_mm": "length\nmax",
     "coordinate_error_mean_mm": "coord.\nmean",
     "coordinate_error_max_mm": "coord.\nmax",
+    "form_mm": "form",
+    "diameter_error_mm": "diam.\nerror",
 }
 
 
@@ -40,15 +44,13 @@ def before_after(
     title: str, before: Mapping[str, float], after: Mapping[str, float], more: Sequence[Sequence[str]] = ()
 ) -> RenderableType:
     """Each figure that there is, before and after, mm; `more` are further rows."""
-    rows = [
-        (_WORDS[name], _cell(before, name), _cell(after, name)) for name in NAMES if name in before or name in after
-    ]
+    rows = [(WORDS[name], _cell(before, name), _cell(after, name)) for name in NAMES if name in before or name in after]
     return table(title, ("", "before / mm", "after / mm"), [*rows, *more])
 
 
 def overall(title: str, figures: Mapping[str, float]) -> RenderableType:
     """Each figure that there is, mm."""
-    return table(title, ("", "mm"), [(_WORDS[name], _cell(figures, name)) for name in NAMES if name in figures])
+    return table(title, ("", "mm"), [(WORDS[name], _cell(figures, name)) for name in NAMES if name in figures])
 
 
 def per_placement(entries: Sequence[PlacementFigures], everything: str) -> list[RenderableType]:

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.console import RenderableType
+from rich.padding import Padding
 from rich.text import Text
 
+from ulna.effects import extra_of
 from ulna.identify import Identification
 from ulna.model import Arm
 from ulna.report.digits import uncertainty
@@ -20,6 +22,9 @@ _CAUSES = {
     "probe-unused": "a probe that no reading uses",
     "joint-still": "a joint that does not move",
     "parallel-axes": "parallel axes",
+    "redundant-link": "a link that says what the tip says",
+    "temperature-still": "a temperature that does not change",
+    "no-moment": "gravity along an axis",
     "coverage": "the choice of poses",
 }
 
@@ -49,6 +54,9 @@ def directions(found: Identification) -> list[RenderableType]:
     if found.weak:
         parts += ["", heading("Determined, but worse than an arm is known from its drawing")]
         parts.append(listed(_weak(direction) for direction in found.weak))
+    if found.from_prior:
+        parts += ["", heading("Known from their priors; the readings say next to nothing of them")]
+        parts.append(Padding(Text(", ".join(found.from_prior)), (0, 0, 0, 1)))
     return parts
 
 
@@ -88,4 +96,8 @@ def _step(weight: float) -> str:
 
 
 def _unit(name: str) -> str:
-    return "rad" if name.rsplit(".", 1)[-1] in ("theta0", "alpha", "beta") else "mm"
+    if name.startswith("joint."):
+        own = {"theta0": "rad", "alpha": "rad", "beta": "rad", "expansion": "1/K", "compliance": "rad/(N m)"}
+        tail = name.rsplit(".", 1)[-1]
+        return own.get(tail, "rad" if extra_of(name) else "mm")
+    return "mm"
