@@ -20,23 +20,26 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from ulna.calibrate import calibrate
     from ulna.cross_validate import CrossValidation, cross_validate
+    from ulna.effects import Effects
     from ulna.errors import InputWarning, UlnaInputError
     from ulna.evaluate import Evaluation, evaluate
     from ulna.identify import identify
     from ulna.measure import measure
     from ulna.model import Arm, Joint, Probe
     from ulna.result import Result
-    from ulna.study import Artefact, FitOptions, Noise, Readings, Study
+    from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
 
 __all__ = [
     "Arm",
     "Artefact",
     "CrossValidation",
+    "Effects",
     "Evaluation",
     "FitOptions",
     "InputWarning",
     "Joint",
     "Noise",
+    "Prior",
     "Probe",
     "Readings",
     "Result",
@@ -54,11 +57,13 @@ _WHERE = {
     "Arm": "model",
     "Artefact": "study",
     "CrossValidation": "cross_validate",
+    "Effects": "effects",
     "Evaluation": "evaluate",
     "FitOptions": "study",
     "InputWarning": "errors",
     "Joint": "model",
     "Noise": "study",
+    "Prior": "study",
     "Probe": "model",
     "Readings": "study",
     "Result": "result",

@@ -7,12 +7,19 @@ import numpy as np
 from ulna import _core
 
 from .chain import Chain
-from .fits import Noise
+from .effects import Affected
+from .fits import Groups, Noise
 from .observed import Lengths, Points
+from .surfaces import Plane, Sphere
 
 
-def core_arm(arm: Chain, names: Sequence[str] | None = None) -> _core.Arm:
+def core_arm(arm: Chain | Affected, names: Sequence[str] | None = None) -> _core.Arm:
     """The same arm in the core; probes are called bent, p1, p2, … unless named."""
+    if isinstance(arm, Affected):
+        compliance = ("compliance_rad_per_nm", "masses_kg", "centres_mm", "gravity")
+        given = ["harmonics_rad", "expansion_per_k", *(compliance if arm.compliance_rad_per_nm is not None else ())]
+        effects = {name: getattr(arm, name) for name in given}
+        return core_arm(arm.chain, names).with_effects(harmonic_orders=list(arm.orders) or None, **effects)
     names = names or ["bent", *(f"p{k}" for k in range(1, arm.probes))]
     hayati = np.array([*arm.hayati, False])
     links = np.zeros((4, arm.joints))
@@ -22,21 +29,36 @@ def core_arm(arm: Chain, names: Sequence[str] | None = None) -> _core.Arm:
     return _core.Arm(theta0, alpha, a, d, beta, np.array(arm.sign, float), hayati, list(names), np.array(arm.tips_mm))
 
 
-def core_problem(arm: Chain, groups: Sequence[Lengths | Points], noise: Noise | None = None) -> _core.Problem:
+def core_problem(arm: Chain | Affected, groups: Groups, noise: Noise | None = None) -> _core.Problem:
     problem = _core.Problem(core_arm(arm), *((noise.encoder_rad, noise.seat_mm) if noise else (None, None)))
     for number, group in enumerate(groups):
         probe = np.broadcast_to(np.asarray(group.probe, np.int64), (len(group.q_rad),)).copy()
+        q_rad, warmth_k = split(arm, group.q_rad)
         if isinstance(group, Lengths):
-            index = problem.add_lengths(f"lengths {number}", group.q_rad, group.p_rad, probe, group.length_mm)
-        else:
+            p_rad, _ = split(arm, group.p_rad)
+            index = problem.add_lengths(f"lengths {number}", q_rad, p_rad, probe, group.length_mm, warmth_k=warmth_k)
+        elif isinstance(group, Points):
             frame = "free" if group.placed else "arm"
             feature, placement = group.feature.astype(np.int64), group.placement.astype(np.int64)
             index = problem.add_points(
-                f"points {number}", group.features_mm, frame, group.q_rad, probe, feature, placement
+                f"points {number}", group.features_mm, frame, q_rad, probe, feature, placement, warmth_k=warmth_k
             )
+        elif isinstance(group, Sphere):
+            touched = (q_rad, probe, group.placement.astype(np.int64))
+            index = problem.add_sphere(
+                f"ball {number}", group.diameter_mm, group.balls_mm, *touched, inside=group.inside, warmth_k=warmth_k
+            )
+        elif isinstance(group, Plane):
+            index = problem.add_plane(group.balls_mm, q_rad, probe, group.placement.astype(np.int64), warmth_k)
         assert index == number
     return problem
 
 
-def nothing_held(arm: Chain) -> np.ndarray:
+def split(arm: Chain | Affected, readings: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """An oracle's readings: angles, and temperatures where there are any."""
+    q_rad, warmth_k = np.ascontiguousarray(readings[:, : arm.joints]), np.ascontiguousarray(readings[:, arm.joints :])
+    return q_rad, warmth_k if warmth_k.size else None
+
+
+def nothing_held(arm: Chain | Affected) -> np.ndarray:
     return np.zeros(len(arm.parameters), bool)

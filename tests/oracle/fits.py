@@ -9,8 +9,9 @@ from scipy.optimize import least_squares
 
 from .chain import Array, Chain
 from .observed import Lengths, Points, stack
+from .surfaces import Plane, Sphere
 
-Groups = Sequence[Lengths | Points]
+Groups = Sequence[Lengths | Points | Sphere | Plane]
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import numpy as np
 
 from .chain import Array, Chain
 from .observed import Lengths, Points
+from .surfaces import Plane, Sphere
 
 #: Travel of every joint of the virtual arms, rad.
 TRAVEL_RAD = np.pi
@@ -158,3 +159,39 @@ def wrong_start(arm: Chain, rng: np.random.Generator, zero_rad: float, length_mm
         last=arm.last + rng.uniform(-length_mm, length_mm, arm.last.shape) * ~np.array(arm.hayati),
         tips_mm=arm.tips_mm + rng.uniform(-length_mm, length_mm, arm.tips_mm.shape),
     )
+
+
+def spheres(
+    arm: Chain,
+    rng: np.random.Generator,
+    count: int,
+    each: int,
+    diameter_mm: float = 50.0,
+    ball_mm: float = 6.0,
+    touches: Touches = EXACT,
+    inside: bool = False,
+) -> Sphere:
+    """A ball in ``count`` places, touched ``each`` times all around with the ball of probe 0."""
+    radius = 0.5 * (diameter_mm - ball_mm if inside else diameter_mm + ball_mm)
+    around = rng.standard_normal((count * each, 3))
+    around *= radius / np.linalg.norm(around, axis=1, keepdims=True)
+    centres = np.repeat(random_points(arm, rng, count), each, axis=0)
+    q = touches.touch(arm, centres + around, rng)
+    return Sphere(diameter_mm, np.full(arm.probes, ball_mm), q, np.repeat(np.arange(count), each), inside=inside)
+
+
+def planes(
+    arm: Chain, rng: np.random.Generator, count: int, each: int, ball_mm: float = 6.0, touches: Touches = EXACT
+) -> Plane:
+    """A flat of 300 mm in ``count`` places, touched ``each`` times with the ball of probe 0."""
+    stands, normals = [], []
+    for where in random_points(arm, rng, 3 * count):
+        turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+        spots = rng.uniform(-150, 150, (2 * each, 2)) @ turn[:, :2].T + where + 0.5 * ball_mm * turn[:, 2]
+        reached = np.isfinite(try_poses(arm, spots, rng)).all(axis=1)
+        if reached.sum() >= each:
+            stands.append(spots[reached][:each])
+            normals.append(turn[:, 2])
+    assert len(stands) >= count
+    q = touches.touch(arm, np.concatenate(stands[:count]), rng)
+    return Plane(np.full(arm.probes, ball_mm), q, np.repeat(np.arange(count), each), np.stack(normals[:count]))

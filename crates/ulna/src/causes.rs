@@ -76,12 +76,27 @@ pub(crate) struct Scene<'a> {
     probes_used: Vec<bool>,
     /// lowest and highest temperature above 20 °C
     warmth_range_k: Option<(f64, f64)>,
+    /// how far a unit of each parameter moves a tip at the most, mm
+    natural_scale: Vec<f64>,
+    /// parameters that only move the base frame
+    base: Vec<usize>,
 }
 
 impl<'a> Scene<'a> {
     pub fn new(problem: &Problem, arm: &'a Arm, free: &'a [usize], poses: &'a [Sample]) -> Scene<'a> {
         let (probes_used, warmth_range_k) = (problem.probes_used(), problem.warmth_range_k());
-        Scene { arm, free, poses, probes_used, warmth_range_k }
+        let (natural_scale, base) = (problem.natural_scale(), problem.base_parameters());
+        Scene { arm, free, poses, probes_used, warmth_range_k, natural_scale, base }
+    }
+
+    /// Whether every tip that was read with lies on the last axis.
+    fn read_on_axis(&self, arm: &Arm) -> bool {
+        (0..arm.probes().len()).all(|p| !self.probes_used[p] || on_last_axis(arm, p))
+    }
+
+    /// Whether a parameter is one of the last joint's effects.
+    fn of_last_encoder(&self, j: usize) -> bool {
+        j >= self.arm.geometry_count() && self.arm.joint_of(j) == Some(self.arm.encoders() - 1)
     }
 
     /// Whether the temperature never changed.
@@ -98,6 +113,8 @@ const STILL_RAD: f64 = 1e-6;
 const PARALLEL_RAD: f64 = 1e-6;
 /// A tip closer to the last axis than this part of its length is on it.
 const ON_AXIS: f64 = 1e-6;
+/// A motion this much smaller than it could be is rounding.
+const VANISHED: f64 = 1e-10;
 /// A motion explained but for this part of its size is explained.
 const EXPLAINED: f64 = 1e-7;
 
@@ -116,6 +133,10 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
                 "take readings with probe {probe} (32 poses in one seat are enough once the arm is known), or hold probe.{probe}.*"
             ),
         };
+    }
+    // a base that grows with the temperature moves by next to nothing more in the warm than in the cold
+    if takes_part.iter().all(|j| scene.base.contains(j)) {
+        return base_frame();
     }
     if let Some(because) = of_effects(&takes_part, scene) {
         return because;
@@ -164,7 +185,7 @@ fn of_effects(takes_part: &[usize], scene: &Scene) -> Option<Because> {
         });
     }
     let bent = beyond(Unit::RadPerNewtonMetre)?;
-    if takes_part.len() > 1 {
+    if takes_part.len() > 1 || scene.of_last_encoder(bent) && scene.read_on_axis(scene.arm) {
         return None;
     }
     let joint = scene.arm.joint_of(bent)? + 1;
@@ -198,7 +219,7 @@ pub(crate) fn scale() -> Because {
 }
 
 fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene) -> Option<Because> {
-    if motion.size > EXPLAINED * motion.effort {
+    if motion.size > EXPLAINED * motion.effort && motion.size > VANISHED * motion.most {
         return None;
     }
     let (joints, geometry) = (scene.arm.joint_parameter_count(), scene.arm.geometry_count());
@@ -216,8 +237,8 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
             ),
         });
     }
-    let read_on_axis = (0..arm.probes().len()).all(|p| !scene.probes_used[p] || on_last_axis(arm, p));
-    if takes_part.iter().any(of_last) && read_on_axis {
+    let seen_by_turning = |j: &usize| of_last(j) || scene.of_last_encoder(*j);
+    if takes_part.iter().any(seen_by_turning) && scene.read_on_axis(arm) {
         return Some(Because {
             cause: Cause::ProbeOnAxis,
             because: "the tip lies on the last axis: turning the last joint moves nothing, so the direction of that axis cannot be seen".into(),
@@ -283,6 +304,8 @@ struct Motion {
     size: f64,
     /// the same of the parts that cancel
     effort: f64,
+    /// and of parts as large as they can be
+    most: f64,
 }
 
 impl Motion {
@@ -300,7 +323,9 @@ impl Motion {
             tips.push(tip_mm(arm, sample.probe, sample.pose()).coords);
         }
         let count = moves.len().max(1) as f64;
+        let most = scene.free.iter().zip(direction).map(|(&j, weight)| (weight * scene.natural_scale[j]).powi(2));
         Motion {
+            most: most.sum::<f64>().sqrt(),
             size: (moves.iter().map(Vector3::norm_squared).sum::<f64>() / count).sqrt(),
             effort: (effort / count).sqrt(),
             tips,

@@ -83,3 +83,56 @@ fn between(table: [f64; 3], dimensions: f64) -> f64 {
     let at = dimensions.clamp(1.0, 3.0) - 1.0;
     if at < 1.0 { table[0] + at * (table[1] - table[0]) } else { table[1] + (at - 1.0) * (table[2] - table[1]) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Expectation over the length of a normal vector of d dimensions and unit deviation, by Simpson's rule piecewise
+    /// between the points where `of` has an edge.
+    fn expected(d: usize, edge: f64, of: impl Fn(f64) -> f64) -> f64 {
+        let norm = [(2.0 / std::f64::consts::PI).sqrt(), 1.0, (2.0 / std::f64::consts::PI).sqrt()][d - 1];
+        let density = |t: f64| norm * t.powi(d as i32 - 1) * (-0.5 * t * t).exp();
+        let simpson = |from: f64, to: f64| {
+            let (n, h) = (2000, (to - from) / 2000.0);
+            let weight = |k: usize| if k == 0 || k == n { 1.0 } else { [2.0, 4.0][k % 2] };
+            (0..=n).map(|k| (k, from + h * k as f64)).map(|(k, t)| weight(k) * of(t) * density(t)).sum::<f64>() * h
+                / 3.0
+        };
+        // just this side and that side of the edge
+        simpson(0.0, edge * (1.0 - 1e-12)) + simpson(edge * (1.0 + 1e-12), 14.0)
+    }
+
+    #[test]
+    fn tuning_costs_five_percent_of_efficiency() {
+        for loss in [Loss::Huber, Loss::Cauchy, Loss::Tukey] {
+            for d in 1..=3 {
+                let c = loss.tuning(d as f64);
+                let slope = expected(d, c, |t| loss.weight(t, c) + loss.slope(t, c) / d as f64);
+                let square = expected(d, c, |t| (loss.weight(t, c) * t).powi(2)) / d as f64;
+                let efficiency = slope * slope / square;
+                assert!((efficiency - 0.95).abs() < 5e-5, "{loss:?} in {d} dimensions: {efficiency}");
+            }
+        }
+    }
+
+    #[test]
+    fn lengths_of_normal_vectors() {
+        for d in 1..=3 {
+            let below = |edge: f64| expected(d, edge, |t| f64::from(t < edge));
+            assert!((below(median_length(d as f64)) - 0.5).abs() < 1e-5);
+            assert!((below(rare_length(d as f64)) - 0.9999).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_weights() {
+        for loss in [Loss::Huber, Loss::Cauchy, Loss::Tukey] {
+            for t in [0.3, 1.1, 2.2, 4.0, 6.5] {
+                let step = 1e-6;
+                let numeric = (loss.weight(t + step, 3.0) - loss.weight(t - step, 3.0)) / (2.0 * step);
+                assert!((loss.slope(t, 3.0) - t * numeric).abs() < 1e-8, "{loss:?} at {t}");
+            }
+        }
+    }
+}

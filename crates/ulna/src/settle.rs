@@ -9,15 +9,16 @@ use crate::solver::lm::Report;
 
 /// Weights by direction change little: they are taken anew at most so often.
 const REWEIGHINGS: usize = 4;
-/// Rounds of a loss or of priors, which go on until the parameters stand still.
-const ROUNDS: usize = 100;
+/// Rounds of a loss or of priors, which go on until the parameters stand still: thirty as a rule, hundreds where a loss
+/// hesitates over a few readings.
+const ROUNDS: usize = 500;
 /// Rounds in which outliers pull as with Huber's loss, whose minimum is the only one, before a loss lets go of them. From
 /// then on the scatter stays as it was found (an MM-estimate, Yohai 1987), and the rounds end.
 const GENTLE_ROUNDS: usize = 12;
 /// What a reading counts that counts for nothing: a placement of nothing but such readings must still stand somewhere.
 const NOTHING: f64 = 1e-12;
-/// Parameters stand still that move no tip by more than this part of the reach.
-const STILL: f64 = 1e-10;
+/// Parameters stand still that move no tip by more than this part of the reach: a nanometre for each metre.
+const STILL: f64 = 1e-9;
 /// Scatter of less than this part of the stated noise, or of the arm's reach, is none.
 const LEAST_OF_NOISE: f64 = 1e-2;
 const LEAST_OF_REACH: f64 = 1e-12;

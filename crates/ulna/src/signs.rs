@@ -53,7 +53,7 @@ pub(crate) fn search(
         // every combination comes up once in each round, in an order that looks like none
         let pattern = combination(attempt, patterns);
         let wide = if unknown.count_ones() > ALL_COMBINATIONS { rng.random::<u64>() } else { spread(pattern, unknown) };
-        thin.set_arm(thin.arm().with_signs(&signed(thin.arm(), unknown & wide)));
+        thin.set_arm(thin.arm().with_signs(&signed(thin.arm(), unknown, wide)));
         let known = plan.throw == Throw::Widening && attempt < patterns;
         if !known {
             throw(thin, free, plan.throw.width(attempt / patterns), x, &mut rng);
@@ -82,9 +82,14 @@ fn spread(pattern: usize, unknown: u64) -> u64 {
     places.filter(|(bit, _)| pattern >> bit & 1 == 1).map(|(_, place)| 1 << place).sum()
 }
 
-/// The arm's signs, those of some joints negated.
-fn signed(arm: &Arm, negated: u64) -> Vec<f64> {
-    arm.signs().enumerate().map(|(i, sign)| if negated >> i & 1 == 1 { -sign.abs() } else { sign.abs() }).collect()
+/// The arm's signs, the unknown ones by a pattern.
+fn signed(arm: &Arm, unknown: u64, negative: u64) -> Vec<f64> {
+    let of = |(i, sign): (usize, f64)| match (unknown >> i & 1, negative >> i & 1) {
+        (0, _) => sign,
+        (_, 0) => 1.0,
+        _ => -1.0,
+    };
+    arm.signs().enumerate().map(of).collect()
 }
 
 struct Twin {

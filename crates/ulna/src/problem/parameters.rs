@@ -1,7 +1,7 @@
 //! A problem's parameters: the arm's, then the fitted dimensions of its artefacts; and what is known of them before.
 
 use super::{LEAST_NOISE, MOST_MM, Problem};
-use crate::arm::{Arm, JointModel, Unit};
+use crate::arm::{Arm, Compliance, JointModel, Unit};
 use crate::error::{Error, Result};
 use crate::priors::Prior;
 use crate::residuals::Dimension;
@@ -105,11 +105,14 @@ impl Problem {
 
     /// Parameters that only move the base frame, where nothing fixes it: theta0 of joint 1, and d of a DH joint 1.
     pub fn base_parameters(&self) -> Vec<usize> {
-        match (self.base_free(), self.arm.joints()[0].model) {
-            (false, _) => vec![],
-            (true, JointModel::Dh) => vec![0, 3],
-            (true, JointModel::Hayati) => vec![0],
+        if !self.base_free() {
+            return vec![];
         }
+        // gravity that leans tells a turned base from one that is not, by how joints give way
+        let leans = self.arm.effects().compliance.as_ref().is_some_and(Compliance::leans);
+        let turn = (!leans).then_some(0);
+        let lift = (self.arm.joints()[0].model == JointModel::Dh).then_some(3);
+        turn.into_iter().chain(lift).collect()
     }
 
     /// How fast every fitted dimension grows with the arm, where no length is known: parameter and mm.

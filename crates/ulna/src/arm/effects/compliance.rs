@@ -29,11 +29,19 @@ pub struct Body {
 /// Standard acceleration of free fall, m/s² (3rd CGPM 1901), times metres in a millimetre: N m for each kg mm.
 const NM_PER_KG_MM: f64 = 9.80665e-3;
 
+/// An axis this much out of plumb is upright, rad.
+const UPRIGHT: f64 = 1e-9;
+
 impl Compliance {
     /// Gravity as a vector that makes N m of kg mm.
     pub(crate) fn pull(&self) -> [f64; 3] {
         let norm = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         self.gravity.map(|g| NM_PER_KG_MM * g / norm)
+    }
+
+    /// Whether gravity pulls another way than along the first axis.
+    pub(crate) fn leans(&self) -> bool {
+        self.gravity[0].hypot(self.gravity[1]) > UPRIGHT * self.gravity[2].abs()
     }
 
     /// Largest moment that gravity could make about any axis of an arm with this reach, N m.

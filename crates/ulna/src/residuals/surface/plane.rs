@@ -1,7 +1,7 @@
 //! A flat.
 //!
 //! ```text
-//! r = n·p(q) - c - D_tip/2        n towards the side that the ball is on
+//! r = n·p(q) - c - D_tip/2        n towards the side that the ball is on: balls that differ tell, else the base's side
 //! ```
 
 use super::{Contact, Shape, Touched};
@@ -85,9 +85,9 @@ fn best_normal(scatter: Matrix3<f64>, pull: Vector3<f64>, middle: Vector3<f64>) 
     let above: Vector3<f64> = eigen.eigenvalues.map(|value| value - least);
     let along = eigen.eigenvectors.transpose() * pull;
     let upright: Vector3<f64> = eigen.eigenvectors.column(smallest).into();
-    // the same plane either way
-    let upright = if upright.dot(&middle) < 0.0 { -upright } else { upright };
-    // nothing pulls it over to one side: the tilt that the pull makes, on the side where the touches are seen from the base
+    // the same plane either way: touched from the side that the arm's base is on, as most are
+    let upright = if upright.dot(&middle) > 0.0 { -upright } else { upright };
+    // nothing pulls it over to one side: the tilt that the pull makes
     let tilt = Vector3::from_fn(|k, _| if k == smallest { 0.0 } else { along[k] / above[k].max(f64::MIN_POSITIVE) });
     if along[smallest].abs() <= f64::EPSILON * along.norm() && tilt.norm() < 1.0 || pull == Vector3::zeros() {
         let across = eigen.eigenvectors * tilt;

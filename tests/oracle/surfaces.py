@@ -1,0 +1,137 @@
+"""Touches of surfaces: distances from a ball or a flat whose place is an explicit unknown."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from .chain import Array, Chain
+from .observed import Index
+
+#: longest that a free direction is turned: the two parameters of a plane's normal stay well behaved
+_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Touches of a ball of (or hollow with) a diameter, mm, with the probes' balls (P,), mm; unknown: the centre."""
+
+    diameter_mm: float
+    balls_mm: Array
+    q_rad: Array
+    placement: Index
+    probe: int | Index = 0
+    inside: bool = False
+
+    @property
+    def radius_mm(self) -> Array:
+        """(N,) of the sphere that the tip moves on."""
+        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
+        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
+
+    def unknowns(self, start: Chain) -> Array:
+        tips = start.tip(self.q_rad, self.probe)
+        rows = []
+        for number in range(self.placement.max() + 1):
+            here = self.placement == number
+            seen, radius = tips[here], self.radius_mm[here]
+            rough = np.linalg.lstsq(np.column_stack([2 * seen, np.ones(len(seen))]), (seen**2).sum(axis=1), rcond=None)[
+                0
+            ][:3]
+            rows.append(least_squares(lambda c, p=seen, r=radius: np.linalg.norm(p - c, axis=1) - r, rough).x)
+        return np.concatenate(rows)
+
+    def _off(self, tips: NDArray, unknowns: NDArray) -> NDArray:
+        apart = tips - unknowns.reshape(-1, 3)[self.placement]
+        return np.sqrt((apart**2).sum(axis=1)) - self.radius_mm
+
+    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
+        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
+
+    def normals(self, arm: Chain, unknowns: Array) -> Array:
+        apart = arm.tip(self.q_rad, self.probe) - unknowns.reshape(-1, 3)[self.placement]
+        return apart / np.linalg.norm(apart, axis=1, keepdims=True)
+
+    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+        return _jacobian(self, arm, unknowns)
+
+    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+        return _covariance(self, arm, encoder_rad, seat_mm)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Touches of a flat; unknown: its normal, as the two small turns from where it seemed to be, and its distance."""
+
+    balls_mm: Array
+    q_rad: Array
+    placement: Index
+    normal: Array  # (placements, 3): roughly, towards the arm
+    probe: int | Index = 0
+
+    @property
+    def radius_mm(self) -> Array:
+        return 0.5 * np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
+
+    def unknowns(self, start: Chain) -> Array:
+        tips = start.tip(self.q_rad, self.probe)
+        rows = []
+        for number in range(self.placement.max() + 1):
+            here = self.placement == number
+            at = float(np.mean(tips[here] @ self.normal[number] - self.radius_mm[here]))
+            one = Plane(self.balls_mm, self.q_rad[here], np.zeros(here.sum(), int), self.normal[number : number + 1])
+            radius = self.radius_mm[here]
+            rows.append(
+                least_squares(
+                    lambda x, plane=one, p=tips[here], r=radius: plane._off(p, x, r),
+                    np.array([0.0, 0.0, at]),
+                    x_scale=[1e-3, 1e-3, 1.0],
+                    xtol=1e-15,
+                    ftol=1e-15,
+                    gtol=1e-15,
+                ).x
+            )
+        return np.concatenate(rows)
+
+    def _stands(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+        """(placements, 3) unit normals and (placements,) distances."""
+        two = unknowns.reshape(-1, 3)
+        across = np.stack([np.linalg.svd(normal[None])[2][1:] for normal in self.normal])
+        turned = self.normal + np.einsum("pk,pkj->pj", two[:, :2], across)
+        return turned / np.sqrt((turned**2).sum(axis=1, keepdims=True)), two[:, 2]
+
+    def _off(self, tips: NDArray, unknowns: NDArray, radius_mm: Array | None = None) -> NDArray:
+        normals, at = self._stands(unknowns)
+        radius_mm = self.radius_mm if radius_mm is None else radius_mm
+        return (tips * normals[self.placement]).sum(axis=1) - at[self.placement] - radius_mm
+
+    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
+        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
+
+    def normals(self, arm: Chain, unknowns: Array) -> Array:
+        return self._stands(unknowns)[0][self.placement]
+
+    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+        return _jacobian(self, arm, unknowns)
+
+    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+        return _covariance(self, arm, encoder_rad, seat_mm)
+
+
+def _jacobian(surface: Sphere | Plane, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+    of_arm = np.einsum("ni,nik->nk", surface.normals(arm, unknowns), arm.jacobian(surface.q_rad, surface.probe))
+    tips = arm.tip(surface.q_rad, surface.probe)
+    columns = np.zeros((len(tips), len(unknowns)))
+    for k in range(len(unknowns)):
+        moved = unknowns.astype(complex)
+        moved[k] += 1j * _STEP
+        columns[:, k] = surface._off(tips, moved).imag / _STEP
+    return of_arm, columns
+
+
+def _covariance(surface: Sphere | Plane, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+    """(N, 1, 1) of a distance, mm²: what of a touch's error is across the surface."""
+    normals = surface.normals(arm, surface.unknowns(arm))
+    j = np.einsum("ni,nik->nk", normals, arm.encoder_jacobian(surface.q_rad, surface.probe))
+    return ((j**2 * encoder_rad**2).sum(axis=1) + seat_mm**2)[:, None, None]
