@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
+from scipy.spatial.transform import Rotation
 from tests.oracle.drawn import drawn_tips
 from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
 
-from ulna import Arm
+from ulna import Arm, UlnaInputError
 from ulna.importers.robots import panda, ur10
 from ulna.importers.urdf import import_urdf
+from ulna.model import Joint, Probe
 from ulna.urdf.arm import arm_from_chain
 from ulna.urdf.chain import read_chain
 
@@ -151,3 +155,68 @@ def test_the_file_says_where_the_base_frame_is(tmp_path: Path) -> None:
     straight = urdf([Made(HERE, STRAIGHT, UP), Made(OUT, STRAIGHT, ASIDE)], base="a&#10;b = 5 &#x7f;")
     assert import_urdf(write(tmp_path, straight), tmp_path / "b.toml").remark.startswith("The arm's base frame is that")
     assert tomllib.loads((tmp_path / "b.toml").read_text())["name"] == "made"
+
+
+MASSES = """<robot name="weighed">
+  <link name="base"><inertial><mass value="9"/></inertial></link>
+  <link name="arm"><inertial><origin xyz="0.1 0.02 0.03" rpy="0.3 0 0"/><mass value="2.5"/></inertial></link>
+  <link name="box"><inertial><origin xyz="0 0 0.05"/><mass value="0.5"/></inertial></link>
+  <link name="hand"><inertial><mass value="1.25"/></inertial></link>
+  <link name="finger"><inertial><origin xyz="0.01 0 0"/><mass value="0.25"/></inertial></link>
+  <link name="ball_link"/>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/>
+    <origin xyz="0.05 0 0.3" rpy="0.2 0 0"/><axis xyz="0 0 1"/></joint>
+  <joint name="glued" type="fixed"><parent link="arm"/><child link="box"/><origin xyz="0 0.2 0" rpy="0 1.1 0"/></joint>
+  <joint name="bend" type="revolute"><parent link="arm"/><child link="hand"/>
+    <origin xyz="0.4 0 0"/><axis xyz="0 1 0"/></joint>
+  <joint name="grip" type="prismatic"><parent link="hand"/><child link="finger"/>
+    <origin xyz="0 0 0.1"/><axis xyz="1 0 0"/></joint>
+  <joint name="tip" type="fixed"><parent link="hand"/><child link="ball_link"/><origin xyz="0.02 0.03 0.2"/></joint>
+</robot>
+"""
+
+
+def test_masses_come_along_with_what_hangs_on_each_joint(tmp_path: Path) -> None:
+    """The arm has its links' masses where the drawing has them, in every pose: fixed and gripping parts too."""
+    path = write(tmp_path, MASSES)
+    arm, t_root_base = arm_from_chain(read_chain(path))
+    first, second = (joint.effects for joint in arm.joints)
+    assert (first.mass_kg, second.mass_kg) == (3.0, 1.5)
+    q_rad = poses(2, 20)
+    # the drawing's chain up to each link, and the masses there, by hand
+    turned = [Rotation.from_euler("xyz", [0.2, 0, 0]) * Rotation.from_rotvec([0, 0, q]) for q, _ in q_rad]
+    box = Rotation.from_euler("xyz", [0, 1.1, 0]).apply([0, 0, 0.05]) + np.array([0, 0.2, 0])
+    of_arm = (2.5 * np.array([0.1, 0.02, 0.03]) + 0.5 * box) / 3.0
+    of_hand = (1.25 * np.zeros(3) + 0.25 * np.array([0.01, 0, 0.1])) / 1.5
+    stand, elbow = np.array([0.05, 0, 0.3]), np.array([0.4, 0, 0])
+    expected = [
+        np.stack([turn.apply(of_arm) + stand for turn in turned]),
+        np.stack(
+            [
+                turn.apply(Rotation.from_rotvec([0, q, 0]).apply(of_hand) + elbow) + stand
+                for turn, (_, q) in zip(turned, q_rad, strict=True)
+            ]
+        ),
+    ]
+    # the arm's frames after its links, told by tips: a probe at the centre, on an arm that ends there
+    at_hand = replace(arm, probes={"centre": Probe(*second.centre_mm)})
+    assert np.abs(tips_in_root(at_hand, t_root_base, q_rad) - 1000 * expected[1]).max() < 1e-5
+    at_arm = replace(at_hand, joints=(arm.joints[0], Joint()), probes={"centre": Probe(*first.centre_mm)})
+    still = np.stack([q_rad[:, 0], np.zeros(20)], axis=1)
+    assert np.abs(tips_in_root(at_arm, t_root_base, still) - 1000 * expected[0]).max() < 1e-5
+    # gravity pulls down the drawing's z
+    assert t_root_base[:3, :3] @ arm.gravity == pytest.approx([0, 0, -1])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('<mass value="2.5"/>', '<mass value="heavy"/>', "link 'arm', value: got 'heavy', expected a number"),
+        ('<mass value="2.5"/>', '<mass value="-2"/>', "link 'arm', value: got '-2', expected 0 or more"),
+        ('xyz="0.1 0.02 0.03"', 'xyz="0.1 0.02"', "link 'arm', xyz: got '0.1 0.02', expected three numbers"),
+    ],
+)
+def test_masses_that_are_none(tmp_path: Path, old: str, new: str, told: str) -> None:
+    assert MASSES.count(old) == 1
+    with pytest.raises(UlnaInputError, match=re.escape(told)):
+        read_chain(write(tmp_path, MASSES.replace(old, new)))

@@ -19,8 +19,9 @@ from ulna.export.urdf import number, numbers
 from ulna.frames.rigid import F64, from_rpy, inverse, pose, to_rpy
 from ulna.model import Arm
 from ulna.urdf.arm import arm_from_chain
-from ulna.urdf.chain import Chain, Step, chain_of, vector
+from ulna.urdf.chain import Chain, Step, chain_of
 from ulna.urdf.document import Document, read_document, start_tag
+from ulna.urdf.numbers import vector
 
 #: changes below this, m or rad, are rounding: what stands in the file stays
 UNCHANGED = 1e-13
@@ -144,8 +145,8 @@ def _edits(document: Document, step: Step, new: F64, chain: Chain) -> list[tuple
     """What to put where, so that the joint's origin is `new`; nothing where it is that already."""
     assert step.element is not None
     origin = step.element.find("origin")
-    old_xyz_m = vector(origin, "xyz", "0 0 0", step.name, chain.path)
-    old_rpy = vector(origin, "rpy", "0 0 0", step.name, chain.path)
+    old_xyz_m = vector(origin, "xyz", "0 0 0", f"joint '{step.name}'", chain.path)
+    old_rpy = vector(origin, "rpy", "0 0 0", f"joint '{step.name}'", chain.path)
     values: dict[str, str] = {}
     for key, old, is_new in (
         ("xyz", old_xyz_m, new[:3, 3] / 1000.0),

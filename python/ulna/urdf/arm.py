@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ulna.effects import NONE, Effects
 from ulna.errors import UlnaInputError
 from ulna.frames.links import PARALLEL, link_at_zero, link_between, without_rounding_mm
 from ulna.frames.rigid import F64, inverse, pose, smallest_turn
 from ulna.model import Arm, Joint, Probe
 from ulna.urdf.chain import Chain
+from ulna.urdf.masses import Mass
 
 #: a first axis nearer to upright than this is upright
 _NO_ANGLE_RAD = 1e-14
@@ -22,7 +24,8 @@ def arm_from_chain(chain: Chain) -> tuple[Arm, F64]:
     The drawn tip is `t_root_base · arm.tip(q)` in every pose, to rounding. The model wants its base frame on axis 1: it
     is the root's where that stands there, and where not, the root's moved the shortest way to the axis and turned by
     the smallest angle. An axis that points another way is geometry of the link before it. Axis 1 has no link before it:
-    one that points down, as of robots that turn clockwise, has sign -1.
+    one that points down, as of robots that turn clockwise, has sign -1. Where the chain's links have masses, so have
+    the joints, and gravity pulls down the root's z.
     Raises UlnaInputError for fewer than two rotary joints.
     """
     frames, t_root_tip = frames_at_zero(chain)
@@ -36,13 +39,26 @@ def arm_from_chain(chain: Chain) -> tuple[Arm, F64]:
     t_root_base, sign = _base(frames[0][:3, 3], axes[0])
     joints: list[Joint] = []
     t = t_root_base
-    for k, step in enumerate(turning[:-1]):
-        link = link_between(*seen_from(t, frames[k + 1][:3, 3], axes[k + 1]))
-        t = t @ link_at_zero(link)
-        joints.append(replace(link, sign=sign if k == 0 else 1, name=step.name, limits_rad=step.limits_rad))
-    joints.append(Joint(name=turning[-1].name, limits_rad=turning[-1].limits_rad))
+    for k, step in enumerate(turning):
+        link = Joint()
+        if k < len(turning) - 1:
+            link = link_between(*seen_from(t, frames[k + 1][:3, 3], axes[k + 1]))
+            t = t @ link_at_zero(link)
+        own = _mass(step.mass, inverse(t) @ frames[k])
+        link = replace(link, sign=sign if k == 0 else 1, name=step.name, limits_rad=step.limits_rad, effects=own)
+        joints.append(link)
     x, y, z = (without_rounding_mm(value) for value in (inverse(t) @ t_root_tip)[:3, 3].tolist())
-    return Arm(chain.name, tuple(joints), {"ball": Probe(x, y, z)}), t_root_base
+    down = (-t_root_base[2, :3]).tolist() if any(joint.effects.mass_kg for joint in joints) else [0.0, 0.0, -1.0]
+    gravity = (down[0] + 0.0, down[1] + 0.0, down[2])
+    return Arm(chain.name, tuple(joints), {"ball": Probe(x, y, z)}, gravity=gravity), t_root_base
+
+
+def _mass(mass: Mass, t_link_joint: F64) -> Effects:
+    """In the frame after the link, given the joint's own frame in that."""
+    if not mass.kg:
+        return NONE
+    x, y, z = (round(value, 6) + 0.0 for value in (t_link_joint @ [*mass.centre_mm, 1.0])[:3].tolist())
+    return Effects(mass_kg=mass.kg, centre_mm=(x, y, z))
 
 
 def frames_at_zero(chain: Chain) -> tuple[list[F64], F64]:

@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError, nearest
-from ulna.files.cells import number_of
-from ulna.frames.rigid import F64, from_rpy, pose
-from ulna.urdf.document import EXPAND, WHAT, Document, read_document
+from ulna.frames.rigid import F64
+from ulna.urdf.document import WHAT, Document, read_document
+from ulna.urdf.masses import NO_MASS, Mass, mass_behind, origin_of
+from ulna.urdf.numbers import MOST, number, vector
 
 TURNING = ("revolute", "continuous")
 
 #: the name of a link that is the tip where nothing else is said
 USUAL_TIP = "ball_link"
-
-#: no robot is larger (m), no joint stands farther round (rad)
-_MOST = 1e6
 
 
 @dataclass(frozen=True)
@@ -35,6 +33,8 @@ class Step:
     axis: F64 | None
     """(3,) unit vector in the joint's frame; None for a fixed joint."""
     limits_rad: tuple[float, float] | None = None
+    mass: Mass = NO_MASS
+    """Of what moves with it, up to the next rotary joint."""
     element: Element | None = field(default=None, compare=False, repr=False)
     """Where it comes from."""
 
@@ -85,9 +85,25 @@ def chain_of(document: Document, tip_link: str | None = None, base_link: str | N
     link = tip_link
     while link in above:
         link, joint = above[link]
-        way.append(joint)
-    steps = tuple(_step(joint, document.path) for joint in reversed(way))
+        way.insert(0, joint)
+    steps = _with_masses([_step(joint, document.path) for joint in way], document)
     return Chain(document.robot.get("name") or document.path.stem, steps, document.path, link, tip_link)
+
+
+def _with_masses(steps: list[Step], document: Document) -> tuple[Step, ...]:
+    links = {link.get("name", ""): link for link in document.robot.findall("link")}
+    below: defaultdict[str, list[tuple[Element, str]]] = defaultdict(list)
+    for child, (parent, joint) in _above(document).items():
+        below[parent].append((joint, child))
+    found: list[Step] = []
+    stop: Element | None = None
+    for step in reversed(steps):
+        if step.axis is not None and step.element is not None:
+            child = _link(step.element, "child", document.path)
+            step = replace(step, mass=mass_behind(child, stop, links, below, document.path))
+            stop = step.element
+        found.insert(0, step)
+    return tuple(found)
 
 
 def _above(document: Document) -> dict[str, tuple[str, Element]]:
@@ -196,9 +212,7 @@ def _step(joint: Element, path: Path) -> Step:
     if not name:
         child = _link(joint, "child", path)
         raise UlnaInputError(f"{path}: the joint above link '{child}' has no name; expected name=\"…\". Add it.")
-    origin = joint.find("origin")
-    xyz_m = vector(origin, "xyz", "0 0 0", name, path)
-    t = pose(from_rpy(*vector(origin, "rpy", "0 0 0", name, path)), 1000.0 * xyz_m)
+    t = origin_of(joint, f"joint '{name}'", path)
     if kind == "fixed":
         return Step(name, t, None, element=joint)
     if kind not in TURNING:
@@ -212,14 +226,14 @@ def _step(joint: Element, path: Path) -> Step:
             f"{path}: joint '{name}' mimics joint '{mimic.get('joint')}'; expected joints with encoders of their own "
             "from base to tip. Choose a tip before it with --tip-link."
         )
-    axis = vector(joint.find("axis"), "xyz", "1 0 0", name, path)
+    axis = vector(joint.find("axis"), "xyz", "1 0 0", f"joint '{name}'", path)
     length = float(np.linalg.norm(axis))
     if length < 1e-9:
         raise UlnaInputError(
             f"{path}: joint '{name}', axis: got '{_plain(axis)}', which has no direction; expected a unit vector such "
             "as '0 0 1'. Correct it."
         )
-    return Step(name, t, axis / length, _limits(joint, name, path), joint)
+    return Step(name, t, axis / length, _limits(joint, name, path), element=joint)
 
 
 def _limits(joint: Element, name: str, path: Path) -> tuple[float, float] | None:
@@ -228,29 +242,15 @@ def _limits(joint: Element, name: str, path: Path) -> tuple[float, float] | None
     if joint.get("type") != "revolute" or limit is None:
         return None
     low, high = (
-        _numbers(limit.get(key, "0"), 1, f"limit {key}", name, path, math.inf)[0] for key in ("lower", "upper")
+        number(limit, key, "0", f"joint '{name}'", path, most=math.inf, called=f"limit {key}")
+        for key in ("lower", "upper")
     )
     if low > high:
         raise UlnaInputError(
             f"{path}: joint '{name}', limit: got lower '{limit.get('lower', '0')}' and upper "
             f"'{limit.get('upper', '0')}'; expected the lower one first. Swap them."
         )
-    return (float(low), float(high)) if low < high and max(-low, high) <= _MOST else None
-
-
-def vector(element: Element | None, key: str, usual: str, joint: str, path: Path) -> F64:
-    """(3,) numbers of an attribute, of `usual` where it or its element is not there. Raises UlnaInputError."""
-    text = usual if element is None else element.get(key, usual)
-    return _numbers(text, 3, key, joint, path)
-
-
-def _numbers(text: str, count: int, key: str, joint: str, path: Path, most: float = _MOST) -> NDArray[np.float64]:
-    values = [number_of(part) for part in text.split()]
-    if len(values) == count and all(value is not None and abs(value) <= most for value in values):
-        return np.array(values, dtype=np.float64)
-    number = "three numbers" if count == 3 else "a number"
-    hint = f"This is xacro. {EXPAND}." if "$" in text else "Correct it."
-    raise UlnaInputError(f"{path}: joint '{joint}', {key}: got '{text[:60]}', expected {number} (m, rad). {hint}")
+    return (float(low), float(high)) if low < high and max(-low, high) <= MOST else None
 
 
 def _plain(values: F64) -> str:
