@@ -14,13 +14,14 @@ from rich.console import Console
 
 from ulna.cli import output
 from ulna.cross_validate import CrossValidation, GroupFigures
+from ulna.extras import JudgedExtra
 from ulna.figures import NAMES, PlacementFigures
 from ulna.identify import Identification
 from ulna.model import Arm, Joint, ParameterCovariance, Probe
 from ulna.probes import probe_views
 from ulna.report.calibration import calibration_report, equations, where_to_look
 from ulna.report.cross_validation import cross_validation_report
-from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
+from ulna.report.digits import decimals, figure_mm, fixed, quantity, uncertainty
 from ulna.report.figures import per_placement
 from ulna.report.identification import combination, determined_in_words
 from ulna.result import FitSummary, Parameter, Result
@@ -85,6 +86,62 @@ def test_a_calibration_fits_the_terminal_with_every_row_whole(
     assert any(line.split() == ["joint.1.a", "-1042.3754", "-1042.4754", "0.0031", "mm", "fitted"] for line in lines)
 
 
+def beyond_geometry() -> Result:
+    """The same with effects, their priors, a verdict, and readings far off."""
+    plain = result()
+    rows = list(plain.parameters)
+    for k in range(1, 8):
+        prior = {"value": 0.0, "u": 0.0005}
+        rows += [
+            dataclasses.replace(parameter(f"joint.{k}.c1", "rad", -0.000123, 3.1e-6), prior=prior),
+            dataclasses.replace(parameter(f"joint.{k}.expansion", "1/K", 1.153e-5, None, "not-determined"), prior=None),
+            parameter(f"joint.{k}.compliance", "rad/(N m)", -1.234e-6, 1.2e-8),
+        ]
+    rows.append(parameter("artefact.ball.diameter", "mm", 50.00123, 0.0004))
+    extras = [
+        JudgedExtra(
+            "encoder-harmonics", "seat_scatter_mean_mm", 0.7828, 0.5287, 0.2541, 0.052, 3, "placement", "earned"
+        ),
+        JudgedExtra("compliance", "seat_scatter_mean_mm", 0.5, 0.51, -0.01, None, 3, "placement", "undecided"),
+    ]
+    far = [
+        {"row": 17 + k, "file": "readings.csv", "artefact": "tool", "placement": "back-high", "feature": "B"}
+        | {"probe": "ball", "norm_mm": 1.43981, "times_scatter": 7.312, "counted": 0.2234}
+        for k in range(12)
+    ]
+    found = dataclasses.replace(plain.identifiability, from_prior=[f"joint.{k}.c1" for k in range(1, 8)])
+    fit = dataclasses.replace(
+        plain.fit, loss="huber", method="annealing", box_evaluations=100_000, undecided_signs=[[1, 3, 5, 7]]
+    )
+    return dataclasses.replace(plain, parameters=rows, extras=extras, outliers=far, identifiability=found, fit=fit)
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_what_goes_beyond_geometry_fits_the_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int
+) -> None:
+    text = shown(capsys, monkeypatch, width, calibration_report(beyond_geometry()))
+    lines = [line.rstrip() for line in text.splitlines()]
+    assert max(len(line) for line in lines) <= width
+    assert "…" not in text
+    (line,) = [line for line in lines if line.startswith("joint.7.expansion ")]
+    assert line.split() == ["joint.7.expansion", "1.15e-5", "–", "–", "1/K", "not-determined"]
+    (line,) = [line for line in lines if line.startswith("joint.3.c1 ")]
+    assert line.split() == ["joint.3.c1", "-0.0001230", "3.1e-6", "0.00050", "rad", "fitted"]
+    words = " ".join(text.split())
+    assert "which way the encoders of joints 1, 3, 5 and 7 count, these readings do not tell" in words.lower()
+    assert "simulated annealing of the box around the arm file (100000 evaluations)" in words
+    assert "Far off the rest: 12 of 101 readings" in words
+    assert (
+        "row 17 of readings.csv (tool, placement back-high, B): 1.4398 mm, 7.31 times the scatter, counted 0.22"
+        in words
+    )
+    assert "The other 2 are in result.json" in words
+    assert "encoder-harmonics 0.7828 0.5287 0.2541 0.052 earned its place" in words
+    assert "compliance 0.5000 0.5100 -0.0100 – cannot be told" in words
+    assert "joint.1.c1, joint.2.c1" in words
+
+
 def test_a_table_wider_than_the_terminal_runs_over_instead_of_being_cut(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -131,6 +188,15 @@ def test_names_are_never_markup() -> None:
 )
 def test_two_digits_of_the_uncertainty_are_shown(u: float | None, unit: str, expected: int) -> None:
     assert decimals(u, unit) == expected
+
+
+def test_tiny_units_in_powers_of_ten() -> None:
+    assert quantity(-1.2345e-6, 1.2e-8, "rad/(N m)") == "-1.234e-6"
+    assert quantity(1.153e-5, 2e-6, "1/K") == "1.15e-5"
+    assert quantity(1.153e-5, None, "1/K") == "1.15e-5"
+    assert quantity(1e-9, 2e-6, "1/K") == "1e-9"
+    assert quantity(0.0, 2e-6, "1/K") == "0"
+    assert quantity(12.34567, 0.012, "mm") == "12.346"
 
 
 def test_numbers_as_text() -> None:

@@ -170,3 +170,40 @@ def test_what_is_written_today_is_still_of_version_1(tmp_path: Path) -> None:
     assert again.arm == old.arm
     assert Arm.load(tmp_path / "arm.toml") == old.arm
     assert again.residuals.equals(old.residuals)
+
+
+def test_arm_1_beyond_geometry() -> None:
+    arm = Arm.load(FOSSILS / "arm-1-effects.toml")
+    first, second, last = arm.joints
+    degree = math.radians(1)
+    assert (arm.full_last_link, arm.gravity, first.sign) == (True, (0.1, 0.0, -2.0), 0)
+    assert first.effects.harmonics_rad == {
+        1: pytest.approx((0.01 * degree, -0.02 * degree)),
+        3: pytest.approx((0.0, 0.005 * degree)),
+    }
+    assert first.effects.expansion_per_k == 1.2e-5
+    assert first.effects.compliance_rad_per_nm == pytest.approx(0.001 * degree)
+    assert (first.effects.mass_kg, second.effects.mass_kg, last.effects.mass_kg) == (4.5, 2.0, 0.0)
+    assert first.effects.centre_mm == pytest.approx((25.4, 50.8, 76.2))
+    assert last.effects.harmonics_rad == {2: pytest.approx((0.01 * degree, 0.0))}
+    assert (last.theta0_rad, last.d_mm) == pytest.approx((5 * degree, 1.5 * 25.4))
+
+
+def test_study_1_of_every_way() -> None:
+    study = Study.load(FOSSILS / "study-1-ways.toml")
+    ball, hollow, flat, bar = (group.artefact for group in study.readings)
+    assert (ball.kind, ball.fitted, ball.inside, ball.diameter_mm) == ("sphere", True, False, pytest.approx(50.8))
+    assert (hollow.inside, hollow.fitted, flat.kind, bar.fitted) == (True, False, "plane", True)
+    assert ball.u_mm == pytest.approx(0.0001 * 25.4)
+    temperature = study.readings[0].temperature_c
+    assert temperature is not None
+    assert temperature.tolist() == [20.5, 20.5, 21.5, 21.5]
+    fit = study.fit
+    assert (fit.loss, fit.method, fit.budget, fit.judge_extras) == ("tukey", "evolution", 5000, False)
+    assert fit.extras == ["encoder-harmonics", "link-expansion", "compliance"]
+    assert (fit.harmonics, fit.box_length_mm) == ([1, 4], pytest.approx(50.8))
+    assert (fit.box_angle_rad, fit.box_offset_rad) == pytest.approx((math.radians(10), math.radians(30)))
+    assert assemble(study).names[-2:] == ["artefact.ball.diameter", "artefact.bar.length"]
+    assert fit.prior["joint.1.a"].in_unit("mm") == pytest.approx((0.02 * 25.4, 1.5 * 25.4))
+    assert fit.prior["joint.*.theta0"].in_unit("rad") == (pytest.approx(math.radians(1)), None)
+    assert fit.prior["joint.*.expansion"].in_unit("1/K") == (2e-6, 1.1e-5)

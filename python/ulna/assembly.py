@@ -133,7 +133,9 @@ _ADD: dict[str, Callable[..., Any]] = {"length": _add_lengths, "sphere": _add_sp
 
 
 def balls_mm(study: Study, arm: Arm, group: Readings) -> F64:
-    """(P,) diameters of the probes' balls, 0 where not needed. Raises UlnaInputError where one is needed and not known.
+    """(P,) diameters of the probes' balls, 0 where not needed.
+
+    Raises UlnaInputError where one is needed and not known, or too large for a hollow.
 
     A plane touched with one probe does not need its ball: the plane lies by half of it farther in, that is all.
     """
@@ -147,5 +149,13 @@ def balls_mm(study: Study, arm: Arm, group: Readings) -> F64:
             f"{study.label}: artefact '{group.artefact.name}' is touched on its surface with probe '{name}', whose "
             f"ball has no diameter in arm '{arm.name}'; expected probe.{name}.ball, in the arm file's length unit. Add "
             "it."
+        )
+    artefact = group.artefact
+    wide = [k for k in used if artefact.inside and (balls[k] or 0.0) >= (artefact.diameter_mm or 0.0)]
+    if wide:
+        raise UlnaInputError(
+            f"{study.label}: artefact '{artefact.name}' is a hollow of {artefact.diameter_mm:g} mm, but the ball of "
+            f"probe '{list(arm.probes)[wide[0]]}' has {balls[wide[0]]:g} mm; expected a smaller ball. Correct the "
+            "diameters, or remove inside."
         )
     return np.array([ball or 0.0 for ball in balls])

@@ -179,9 +179,13 @@ def codes(
         if remarks is not None:
             remark_unused(frame, header, source, column, remarks)
         names = frame[column]
+        if len(known) == 1:  # nothing needs to be said where there is one choice
+            names = names.replace("", known[0])
         strange = ~names.is_in(known)
         if strange.any():
             first = int(strange.arg_true()[0])
+            if names[first] == "":
+                raise UlnaInputError(header.refusal(int(row[first]), column, is_numeric))
             at = header.at(int(row[first]), column)
             raise UlnaInputError(
                 f"{header.path}: {at}: got '{names[first]}', which {owner} does not have."

@@ -107,10 +107,10 @@ class Header(ABC):
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
         """The message about a cell that `cells` left as a gap, or that is not finite."""
 
-    def frame(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
-        """All rows of some columns, every cell filled, every number finite. Raises UlnaInputError naming row, column
-        and value of the first cell that is not."""
-        return self.checked(self.cells(numeric, columns), numeric)
+    def frame(self, numeric: Numeric, columns: Sequence[str], blank: Sequence[str] = ()) -> pl.DataFrame:
+        """All rows of some columns, every cell filled but those of `blank`, every number finite. Raises UlnaInputError
+        naming row, column and value of the first cell that is not."""
+        return self.checked(self.cells(numeric, columns), numeric, blank=blank)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
         """The same in pieces of about `rows` rows, in bounded memory where the format allows it. Here it does not."""
@@ -124,17 +124,25 @@ class Header(ABC):
         return Piece(before, values, {name: frame[name] for name in texts})
 
     def checked(
-        self, frame: pl.DataFrame, numeric: Numeric, row: NDArray[np.int64] | None = None, before: int = 0
+        self,
+        frame: pl.DataFrame,
+        numeric: Numeric,
+        row: NDArray[np.int64] | None = None,
+        before: int = 0,
+        blank: Sequence[str] = (),
     ) -> pl.DataFrame:
         """The frame, if every cell is filled and every number finite; strings without spaces around them.
 
-        row: (N,) the rows' numbers in the file; without it they follow each other after the first `before`. Raises
-        UlnaInputError.
+        row: (N,) the rows' numbers in the file; without it they follow each other after the first `before`. blank:
+        columns of names in which cells may be empty (""). Raises UlnaInputError.
         """
+        frame = frame.with_columns(pl.col(name).fill_null("") for name in blank if name in frame.columns)
         spaced = [c.name for c in frame if c.dtype == pl.String and bool(c.str.contains(r"^\s|\s$").any())]
         frame = frame.with_columns(pl.col(spaced).str.strip_chars()) if spaced else frame
         first: tuple[int, str] | None = None
         for column in frame:
+            if column.name in blank:
+                continue
             bad = column.is_null()
             bad |= ~column.is_finite().fill_null(False) if numeric(column.name) else (column == "").fill_null(True)
             if bad.any():

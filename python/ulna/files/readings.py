@@ -26,6 +26,9 @@ I64 = NDArray[np.int64]
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 
+#: names that only some artefacts need: a ball has no features, a seat just one
+NAMELESS = ("feature",)
+
 
 def read_readings(
     source: Source,
@@ -72,9 +75,9 @@ def _table(
                 f"{path}: {', '.join(map(header.own, asked))} {'have' if len(asked) > 1 else 'has'} {rows} rows, the "
                 f"readings {len(every)}; expected as many where rows are chosen by them ({place}'). Correct the arrays."
             )
-        frame = header.checked(every[chosen], is_numeric, row)
+        frame = header.checked(every[chosen], is_numeric, row, blank=NAMELESS)
     else:
-        frame = read_table(header, is_numeric, needed)
+        frame = read_table(header, is_numeric, needed, NAMELESS)
         row, rows = np.arange(1, len(frame) + 1), len(frame)
     if not rows:
         raise UlnaInputError(

@@ -85,12 +85,15 @@ def _check_names(header: Header, layout: Layout) -> None:
             raise UlnaInputError(f"{header.path}: the column '{left}' appears twice; expected each once. Remove one.")
 
 
-def read_table(header: Header, numeric: Numeric, columns: Sequence[str] | None = None) -> pl.DataFrame:
-    """Some columns, or all: Float64 where `numeric` says so, else String; every cell filled, every number finite.
+def read_table(
+    header: Header, numeric: Numeric, columns: Sequence[str] | None = None, blank: Sequence[str] = ()
+) -> pl.DataFrame:
+    """Some columns, or all: Float64 where `numeric` says so, else String; every cell filled but those of `blank`, every
+    number finite.
 
     Raises UlnaInputError naming row, column and value of the first cell that is not.
     """
-    return header.frame(numeric, header.columns if columns is None else columns)
+    return header.frame(numeric, header.columns if columns is None else columns, blank)
 
 
 def iter_tables(header: Header, numeric: Numeric, rows: int = 1 << 18) -> Iterator[pl.DataFrame]:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
+from ulna.effects import extra_of
 from ulna.probes import ProbeView
-from ulna.report.digits import decimals, figure_mm, fixed, uncertainty
+from ulna.report.digits import decimals, figure_mm, fixed, quantity, uncertainty
 from ulna.report.extras import judged_extras
 from ulna.report.figures import before_after
 from ulna.report.identification import determined_in_words, directions
@@ -35,7 +36,7 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
     rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
     parts += ["", before_after("Before and after, on the fitted readings", result.before, result.after, [rms])]
-    parts += ["", parameter_table(result.parameters)]
+    parts += ["", *parameter_tables(result.parameters)]
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
@@ -102,17 +103,29 @@ def where_to_look(result: Result) -> str:
     return " ".join(hints)
 
 
-def parameter_table(parameters: list[Parameter]) -> RenderableType:
-    """Every parameter: start, value, standard uncertainty, that of its prior where there are any, unit, status."""
+def parameter_tables(parameters: Sequence[Parameter]) -> list[RenderableType]:
+    """Every parameter: start, value, standard uncertainty, that of its prior where there are any, unit, status.
+
+    What is beyond the arm's geometry stands in a table of its own, which starts at zero or at a certificate's value.
+    """
+    beyond = [row for row in parameters if extra_of(row.name) or row.name.startswith("artefact.")]
+    geometry = [row for row in parameters if row not in beyond]
+    tables: list[RenderableType] = [_parameter_table("Parameters (u: standard uncertainty)", geometry, True)]
+    if beyond:
+        tables += ["", _parameter_table("Beyond the arm's geometry", beyond, False)]
+    return tables
+
+
+def _parameter_table(title: str, parameters: Sequence[Parameter], with_start: bool) -> RenderableType:
     with_priors = any(row.prior is not None for row in parameters)
     rows = []
     for row in parameters:
-        places = decimals(row.u, row.unit)
+        start = [quantity(row.start, row.u, row.unit)] if with_start else []
+        value = quantity(row.value, row.u, row.unit)
         prior = [uncertainty(None if row.prior is None else row.prior["u"])] if with_priors else []
-        values = fixed(row.start, places), fixed(row.value, places), uncertainty(row.u)
-        rows.append([row.name, *values, *prior, row.unit, row.status])
-    heads = ["", "start", "value", "u", *(["prior u"] if with_priors else []), "unit", "status"]
-    made = table("Parameters (u: standard uncertainty)", heads, rows)
+        rows.append([row.name, *start, value, uncertainty(row.u), *prior, row.unit, row.status])
+    heads = ["", *(["start"] if with_start else []), "value", "u", *(["prior u"] if with_priors else [])]
+    made = table(title, [*heads, "unit", "status"], rows)
     made.columns[-2].justify = made.columns[-1].justify = "left"
     return made
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-_MOST_DECIMALS = {"mm": 6, "rad": 9, "1/K": 9, "rad/(N m)": 9}
-_PLAIN_DECIMALS = {"mm": 4, "rad": 6, "1/K": 7, "rad/(N m)": 7}
-"""Where no uncertainty is known: 0.1 µm, 1 µrad, 0.1 µm/(m K), 0.1 µrad/(N m)."""
+_MOST_DECIMALS = {"mm": 6, "rad": 9}
+_PLAIN_DECIMALS = {"mm": 4, "rad": 6}
+"""Where no uncertainty is known: 0.1 µm and 1 µrad."""
 
 
 def decimals(u: float | None, unit: str) -> int:
@@ -14,6 +14,16 @@ def decimals(u: float | None, unit: str) -> int:
     if u is None or not u > 0.0:
         return _PLAIN_DECIMALS[unit]
     return min(max(1 - math.floor(math.log10(u)), 0), _MOST_DECIMALS[unit])
+
+
+def quantity(value: float, u: float | None, unit: str) -> str:
+    """A parameter's value with the digits that its uncertainty bears; 1/K and rad/(N m), all tiny, in powers of ten."""
+    if unit in _MOST_DECIMALS:
+        return fixed(value, decimals(u, unit))
+    if value == 0.0:
+        return "0"
+    bears = 3 if not u else math.floor(math.log10(abs(value))) - math.floor(math.log10(u)) + 2
+    return small(value, min(max(bears, 1), 6))
 
 
 def fixed(value: float, places: int) -> str:

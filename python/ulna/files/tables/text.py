@@ -50,17 +50,20 @@ class TextTable(Header):
 
     # ------------------------------------------------------------ all rows at once
 
-    def frame(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+    def frame(self, numeric: Numeric, columns: Sequence[str], blank: Sequence[str] = ()) -> pl.DataFrame:
         if self.decimal == ",":  # Polars would also take a decimal point, or one between thousands
-            return super().frame(numeric, columns)
+            return super().frame(numeric, columns, blank)
+        filled = [column for column in columns if column not in blank]
         try:
             frame = self._scan({c: pl.Float64 for c in columns if numeric(c)}).collect()
             if frame[self.columns[-1]].null_count():  # an empty cell, a short row or a blank line
-                frame = frame.head(self._walk(numeric, columns))
-            return self.checked(frame.select(columns), numeric)
+                frame = frame.head(self._walk(numeric, filled))
+            return self.checked(frame.select(columns), numeric, blank=blank)
         except polars.exceptions.PolarsError:
-            self._walk(numeric, columns)
-            return super().frame(numeric, columns)  # every cell is fine, only written in a way that Polars refuses
+            self._walk(numeric, filled)
+            return super().frame(
+                numeric, columns, blank
+            )  # every cell is fine, only written in a way that Polars refuses
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         try:
