@@ -17,9 +17,10 @@ from tests.cli_runs import assert_bad_input, platinum, run, strict_json, write_l
 def test_reproduce_lists_studies() -> None:
     done = run("reproduce")
     assert done.returncode == 0, done.stderr
-    assert "cheng2011" in done.stdout
-    assert "cheng2011" in strict_json(run("reproduce", "--json").stdout)["studies"]
-    assert_bad_input(run("reproduce", "cheng2010"), "Did you mean 'cheng2011'?")
+    for name in ("cheng2011", "shimojima2002", "all"):
+        assert name in done.stdout
+        assert name in strict_json(run("reproduce", "--json").stdout)["studies"]
+    assert_bad_input(run("reproduce", "gao2010"), "Did you mean 'gao2009'?")
 
 
 def test_unknown_command_and_option_name_the_nearest() -> None:

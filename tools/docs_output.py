@@ -31,6 +31,16 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
+#: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
+#: docs are of today compares what is quick, without the times (tests/test_recovery_ways.py)
+WAYS = {
+    f"ways-{study}.txt": study
+    for study in ("all", "shimojima2002", "santolaria2010", "wang2007", "gao2009", "wang2010", "cheng2010")
+}
+WAYS_PICTURE = ROOT / "docs" / "pictures" / "ways.png"
+#: where the outcomes begin; the page has those of all works once
+OUTCOMES = "\nOn the same two arms"
+
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",
@@ -69,6 +79,20 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(folder / made, shown)
+    return found
+
+
+def ways_outputs() -> dict[str, str]:
+    """File name → text, of the ways of the literature; puts their picture in place. Raises RuntimeError."""
+    found = {}
+    with reader_folder() as folder:
+        for name, study in WAYS.items():
+            done = ulna(["reproduce", study, "-o", f"out/{study}"], folder)
+            if done.returncode != 0:
+                raise RuntimeError(f"ulna reproduce {study} exited with {done.returncode}:\n{done.stdout}{done.stderr}")
+            text = tidy(done.stdout)
+            found[name] = text if study == "all" else tidy(text.split(OUTCOMES)[0])
+        shutil.copyfile(folder / "out" / "all" / "ways.png", WAYS_PICTURE)
     return found
 
 
@@ -112,7 +136,7 @@ def filled_readme(text: str) -> str:
 def main() -> None:
     OUTPUT.mkdir(parents=True, exist_ok=True)
     EXAMPLES_OUTPUT.mkdir(parents=True, exist_ok=True)
-    for name, text in command_outputs(pictures=True).items():
+    for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():

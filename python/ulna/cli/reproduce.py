@@ -1,8 +1,8 @@
 """`ulna reproduce`: a study of the literature rerun, its numbers beside ours.
 
 The studies live in `ulna.reproduce`, one module each. The registry `ulna.reproduce.STUDIES` maps a name to
-``(one-line description, module name)``; that module of `ulna.reproduce` has ``run(out, progress) -> Reproduction``,
-where the two protocols below say what is meant.
+``(one-line description, module name)``; that module has ``run(out, progress) -> Reproduction``, where the two protocols
+below say what is meant.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Reproduction(Protocol):
 
 
 class ReproductionModule(Protocol):
-    """A module `ulna.reproduce.<name>`."""
+    """A module that the registry names."""
 
     def run(self, out: Path | None, progress: Progress | None) -> Reproduction:
         """Rerun the study; where `out` is given, write its pictures and tables into that folder (made whole or not
@@ -75,7 +75,7 @@ def reproduce(
         raise UlnaInputError(f"ulna reproduce: there is no study '{name}'.{nearest(name, STUDIES)}")
     if out is not None and out.exists() and not force:
         raise UlnaInputError(f"{out}: exists already and is not overwritten. Name another folder, or give --force.")
-    module = cast("ReproductionModule", importlib.import_module(f"ulna.reproduce.{STUDIES[name][1].split('.')[-1]}"))
+    module = cast("ReproductionModule", importlib.import_module(STUDIES[name][1]))
     with output.progress_bar() as progress:
         found = module.run(out, progress)
     if as_json:

@@ -1,15 +1,13 @@
-"""The arms of the paper, and where a virtual one can stand. Angles rad, lengths mm."""
+"""The arms of the paper. Angles rad, lengths mm."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.model import Arm, Joint, Probe
-
-F64 = NDArray[np.float64]
+from ulna.reproduce.virtual import VirtualArm
 
 _QUARTER = math.pi / 2
 
@@ -53,12 +51,6 @@ STRAIGHT_PROBE = (-1.8676, 0.0965, 238.5596)
 BAR_MM = 443.172
 RATED_MM = 0.037
 """The arm's rated length accuracy: ten fresh measurements of the bar stayed within ± this."""
-ENCODER_RAD = 5e-6
-SEAT_MM = 0.008
-"""Noise of the virtual experiment, standard deviations: of each encoder, and of a touch per coordinate."""
-
-TRIES = 400
-"""Random elbows and wrists to try for a point, so that one at the edge of the arm's travel is not given up."""
 
 
 def arm_of(name: str, links: Links, probe: Probe) -> Arm:
@@ -78,34 +70,12 @@ def platinum(probe: tuple[float, float, float]) -> Arm:
     return arm_of("FARO Platinum (Table 4)", TABLE_4, Probe.from_cylindrical(*probe))
 
 
-def travel_rad(arm: Arm) -> F64:
-    """(7, 2) encoder limits of the virtual arm: the paper gives none. Swivels turn once, hinges from -0.3 to 2.7 rad.
+def virtual(arm: Arm) -> VirtualArm:
+    """With limits of travel: the paper gives none. Swivels turn once, hinges from -0.3 to 2.7 rad.
 
     A hinge (joints 2, 4, 6) at turn 0 stretches the arm straight.
     """
     limits = np.tile([-math.pi, math.pi], (arm.n, 1))
     for i in (1, 3, 5):
         limits[i] = arm.joints[i].theta0_rad + np.array([-0.3, 2.7])
-    return limits
-
-
-def touch(arm: Arm, points_mm: F64, seed: int, rng: np.random.Generator) -> F64:
-    """(N, 7) encoder readings with the ball in seats at (N, 3) points: seat noise, elbow at random, encoder noise."""
-    beside = points_mm + SEAT_MM * rng.standard_normal(points_mm.shape)
-    q_rad, reached = arm.core.pose_for_points(beside, travel_rad(arm), seed, tries=TRIES)
-    if not reached.all():
-        raise ValueError(f"{int((~reached).sum())} of {len(reached)} points are out of the virtual arm's reach")
-    return q_rad + ENCODER_RAD * rng.standard_normal(q_rad.shape)
-
-
-def places_of_a_bar(arm: Arm, count: int, seed: int, rng: np.random.Generator) -> F64:
-    """(count, 2, 3) ends of a bar in random places and directions, both within the arm's reach and travel."""
-    tries = 4 * count + 20
-    limits = travel_rad(arm)
-    first = arm.tip(rng.uniform(limits[:, 0], limits[:, 1], (tries, arm.n)))
-    direction = rng.standard_normal((tries, 3))
-    second = first + BAR_MM * direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    _, reached = arm.core.pose_for_points(second, limits, seed, tries=TRIES // 40)
-    if reached.sum() < count:
-        raise ValueError(f"only {int(reached.sum())} of {count} places of the bar are within the virtual arm's reach")
-    return np.stack([first, second], axis=1)[reached][:count]
+    return VirtualArm(arm, limits)

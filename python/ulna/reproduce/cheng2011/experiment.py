@@ -10,17 +10,8 @@ from numpy.typing import NDArray
 
 from ulna import _core
 from ulna.model import Arm, Probe
-from ulna.reproduce.cheng2011.arms import (
-    BAR_MM,
-    BENT_PROBE,
-    ENCODER_RAD,
-    RATED_MM,
-    SEAT_MM,
-    STRAIGHT_PROBE,
-    places_of_a_bar,
-    platinum,
-    touch,
-)
+from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, RATED_MM, STRAIGHT_PROBE, platinum, virtual
+from ulna.reproduce.virtual import ENCODER_RAD, SEAT_MM, as_drawn
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -28,6 +19,7 @@ Progress = Callable[[str, int, int], None]
 BARS = 101
 FRESH_BARS = 10
 SEAT_POSES = 32
+BAR_ENDS_MM = np.array([[0.0, 0.0, 0.0], [BAR_MM, 0.0, 0.0]])
 START_RAD = 0.1
 START_MM = 100.0
 """The arm of the start: everything off by up to this, as a drawing might be."""
@@ -72,7 +64,7 @@ def rerun_experiment(seed: int) -> Experiment:
     bent, straight = platinum(BENT_PROBE), platinum(STRAIGHT_PROBE)
     noise = np.full(bent.n, ENCODER_RAD)
 
-    start = _start(bent, rng)
+    start = as_drawn(bent, rng, START_RAD, START_MM)
     bars_rad = _touch_bars(bent, BARS, seed, rng)
     problem = _core.Problem(start.core, noise, SEAT_MM)
     length_mm = np.full(BARS, BAR_MM)
@@ -126,21 +118,11 @@ def repeat_experiment(seed: int, repeats: int, progress: Progress | None) -> Rep
     return Repeated(repeats, *(int(count) for count in within), *(float(value) for value in rms_mm))
 
 
-def _start(arm: Arm, rng: np.random.Generator) -> Arm:
-    """What a drawing might give: zero offsets and lengths off, twists at right angles, the probe badly measured."""
-    wrong = arm.parameters.copy()
-    for k, (name, unit) in enumerate(zip(arm.parameter_names, arm.parameter_units, strict=True)):
-        if name.endswith("alpha"):
-            wrong[k] = np.copysign(np.pi / 2, wrong[k])
-        elif name not in ("joint.1.theta0", "joint.1.d"):  # the paper assigns these: lengths do not determine them
-            wrong[k] += rng.uniform(-1.0, 1.0) * (START_RAD if unit == "rad" else START_MM)
-    return arm.with_parameters(wrong)
-
-
 def _touch_bars(arm: Arm, count: int, seed: int, rng: np.random.Generator) -> F64:
     """(count, 2, 7) encoder readings with the ball in both seats of a bar that is put in `count` random places."""
-    ends_mm = places_of_a_bar(arm, count, seed, rng)
-    return touch(arm, ends_mm.reshape(-1, 3), seed, rng).reshape(count, 2, arm.n)
+    of = virtual(arm)
+    ends_mm = of.places(BAR_ENDS_MM, count, seed, rng)
+    return of.touch(ends_mm.reshape(-1, 3), seed, rng).reshape(count, 2, arm.n)
 
 
 def _errors_mm(arm: Arm, bars_rad: F64) -> list[float]:
@@ -163,8 +145,9 @@ def _straight_probe(calibrated: Arm, truth: Arm, seed: int, rng: np.random.Gener
     """The second step: joints held as calibrated, the straight probe alone from poses in one seat."""
     guess = Probe(0.0, 0.0, 220.0)
     start = replace(calibrated, probes={"bent": guess})
-    seat_mm = places_of_a_bar(truth, 1, seed, rng)[0, :1]  # one place within reach
-    q_rad = touch(truth, np.repeat(seat_mm, SEAT_POSES, axis=0), seed, rng)
+    of = virtual(truth)
+    seat_mm = of.places(BAR_ENDS_MM, 1, seed, rng)[0, :1]  # one place within reach
+    q_rad = of.touch(np.repeat(seat_mm, SEAT_POSES, axis=0), seed, rng)
     problem = _core.Problem(start.core, np.full(truth.n, ENCODER_RAD), SEAT_MM)
     none = np.zeros(SEAT_POSES, dtype=np.int64)
     problem.add_points("cone", np.zeros((1, 3)), "free", q_rad, none, none, none)

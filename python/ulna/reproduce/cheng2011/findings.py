@@ -14,11 +14,11 @@ from ulna.reproduce.cheng2011.arms import RATED_MM
 from ulna.reproduce.cheng2011.convergence import Convergence
 from ulna.reproduce.cheng2011.experiment import Experiment, Repeated
 from ulna.reproduce.cheng2011.simulation import Simulated
+from ulna.reproduce.claims import FORMAT, Claim
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-FORMAT = "ulna-reproduction/1"
 FILES = ("cheng2011.json", "bars.svg", "bars.png", "convergence.svg", "convergence.png")
 
 EXACT_RAD, EXACT_MM = 1e-9, 1e-6
@@ -29,17 +29,6 @@ PAPERS_LIMIT_RAD = 0.1
 USUALLY = 0.75
 """Share of repeats in which all ten bars must stay within the rated accuracy. The true arm has 0.97, calibrated ones
 0.9: the noise of one bar is a third of the limit, and a calibration adds to it."""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A number of the paper beside ours."""
-
-    what: str
-    paper: str
-    ours: str
-    agrees: bool | None
-    """None: the paper reports a limit of its own method that ours does not have."""
 
 
 @dataclass(frozen=True)

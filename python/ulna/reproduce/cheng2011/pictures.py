@@ -1,10 +1,9 @@
-"""The pictures of the study, as SVG and PNG: colours that a colour-blind reader can tell apart, and shapes besides."""
+"""The pictures of the study, as SVG and PNG."""
 
 from __future__ import annotations
 
 from math import pi
 from pathlib import Path
-from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -12,18 +11,7 @@ from matplotlib.figure import Figure
 from ulna.reproduce.cheng2011.arms import RATED_MM
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_MM, Convergence
 from ulna.reproduce.cheng2011.experiment import Experiment
-
-# Okabe and Ito's palette (2008): blue, vermilion, bluish green, and a grey for what is given.
-BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#595959"
-
-STYLE: Any = {
-    "font.size": 10,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-    "svg.hashsalt": "ulna",  # the same numbers make the same file
-    "svg.fonttype": "path",
-}
+from ulna.reproduce.style import BLUE, GREEN, GREY, STYLE, VERMILION, save_picture
 
 
 def draw_bars(found: Experiment, folder: Path) -> None:
@@ -69,7 +57,7 @@ def draw_bars(found: Experiment, folder: Path) -> None:
             color=GREY,
             fontsize=8,
         )
-        _save(figure, folder, "bars")
+        save_picture(figure, folder, "bars")
 
 
 def draw_convergence(found: list[Convergence], folder: Path) -> None:
@@ -105,9 +93,4 @@ def draw_convergence(found: list[Convergence], folder: Path) -> None:
         axes.set_ylabel(f"starts that find the arm / %   (of {found[0].starts} each)")
         axes.set_ylim(0, 104)
         axes.legend(loc="lower left", bbox_to_anchor=(0.05, 0.10))
-        _save(figure, folder, "convergence")
-
-
-def _save(figure: Figure, folder: Path, name: str) -> None:
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-    figure.savefig(folder / f"{name}.png", dpi=160)
+        save_picture(figure, folder, "convergence")

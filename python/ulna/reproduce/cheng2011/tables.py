@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import pi
 from typing import TYPE_CHECKING
 
-from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_MM
 from ulna.reproduce.cheng2011.experiment import BARS, START_MM, START_RAD, Calibrated
+from ulna.reproduce.claims import agrees, claims_table, plain_table
 
 if TYPE_CHECKING:
-    from ulna.reproduce.cheng2011.findings import Claim, Findings
+    from ulna.reproduce.cheng2011.findings import Findings
 
 
 def tables(found: Findings) -> RenderableType:
@@ -24,11 +23,11 @@ def tables(found: Findings) -> RenderableType:
     return Group(
         Text("Cheng, Yu, Fei 2011: model and calibration of a seven-axis arm", style="bold"),
         blank,
-        _claims("Simulation: Table 2 from Table 3, 101 exact lengths", found.of_simulation()),
+        claims_table("Simulation: Table 2 from Table 3, 101 exact lengths", found.of_simulation()),
         blank,
         _convergence(found),
         blank,
-        _claims("Experiment, on a virtual arm with the parameters of Table 4", found.of_experiment()),
+        claims_table("Experiment, on a virtual arm with the parameters of Table 4", found.of_experiment()),
         blank,
         _parameters(found),
         blank,
@@ -36,38 +35,8 @@ def tables(found: Findings) -> RenderableType:
     )
 
 
-def _plain(title: str, caption: str | None = None) -> Table:
-    return Table(
-        title=Text(title, style="bold"),
-        title_justify="left",
-        caption=caption,
-        caption_justify="left",
-        caption_style="",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-        header_style="",
-    )
-
-
-def _agrees(claim: Claim) -> str:
-    return "–" if claim.agrees is None else "yes" if claim.agrees else "NO"
-
-
-def _claims(title: str, claims: Sequence[Claim]) -> Table:
-    table = _plain(title)
-    table.width = 80
-    for head, share in (("what", 8), ("the paper", 6), ("ours", 9)):
-        table.add_column(head, ratio=share)
-    table.add_column("agrees", no_wrap=True)
-    for claim in claims:
-        table.add_row(claim.what, claim.paper, claim.ours, _agrees(claim))
-    return table
-
-
 def _convergence(found: Findings) -> Table:
-    table = _plain(
+    table = plain_table(
         f"Zero offsets wrong, lengths wrong by up to {WRONG_BY_MM:g} mm: starts that find the arm",
         f"{found.convergence[0].starts} random starts each. one start: Levenberg–Marquardt once, as in the paper; "
         "default: a poor minimum is noticed and searched on from; search: from the beginning. –: a limit of the paper "
@@ -81,14 +50,14 @@ def _convergence(found: Findings) -> Table:
     for at, claim in zip(found.convergence, found.of_convergence(), strict=True):
         size = "π" if at.wrong_by_rad == pi else f"{at.wrong_by_rad:g}"
         counts = (str(count) for count in (at.one_start, at.given, at.search))
-        table.add_row(size, claim.paper, *counts, _agrees(claim))
+        table.add_row(size, claim.paper, *counts, agrees(claim))
     return table
 
 
 def _parameters(found: Findings) -> Table:
     experiment = found.experiment
     chi2 = "" if experiment.chi2_per_dof is None else f", chi²/dof {experiment.chi2_per_dof:.2f}"
-    table = _plain(
+    table = plain_table(
         "Parameters, rad and mm",
         f"{BARS} lengths, start off by up to {START_RAD:g} rad and {START_MM:g} mm: {experiment.iterations} "
         f"iterations, rms {experiment.rms_mm:.4f} mm{chi2}. The straight probe from one seat, joints held.",
@@ -111,7 +80,7 @@ def _numbers(row: Calibrated) -> tuple[str, str, str, str, str]:
 
 def _bars(found: Findings) -> Table:
     experiment = found.experiment
-    table = _plain(
+    table = plain_table(
         "Ten fresh bars: error of the length, µm",
         f"The true arm's errors are those of noise alone. Over {found.repeated.repeats} repeats the rms is "
         f"{1000 * found.repeated.bent_rms_mm:.1f} µm bent, {1000 * found.repeated.straight_rms_mm:.1f} µm straight, "

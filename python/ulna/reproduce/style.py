@@ -1,0 +1,26 @@
+"""How the pictures look: colours that a colour-blind reader can tell apart, and shapes besides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+# Okabe and Ito's palette (2008): blue, vermilion, bluish green, and a grey for what is given.
+BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#595959"
+
+STYLE: Any = {
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "svg.hashsalt": "ulna",  # the same numbers make the same file
+    "svg.fonttype": "path",
+}
+
+
+def save_picture(figure: Figure, folder: Path, name: str) -> None:
+    """As SVG and as PNG."""
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+    figure.savefig(folder / f"{name}.png", dpi=160)
