@@ -11,13 +11,16 @@ from benchmarks.peers import Times
 from benchmarks.readings import F64, FOUND, START, TRUTH, Lengths, lengths, noisy, poses
 
 FORWARD_POSES = 1_000_000
+#: what a touch costs by what is touched; on the bars, by what the arm does beyond its geometry
+TOUCHED = ("bar", "plate", "seat", "sphere", "plane")
+EFFECTS = ("harmonics 1", "harmonics 1, 2", "expansion", "compliance")
 #: as many lengths as stay in the caches: what a kernel does, not what the memory bus does
 RESIDUAL_LENGTHS = 10_000
 FIT_LENGTHS = (101, 10_000, 1_000_000)
 REPEATED_FITS = 1000
 REPEATED_LENGTHS = 101
 
-TASKS = {
+TASKS: dict[str, str] = {
     "forward": f"forward map of {FORWARD_POSES:,} poses",
     "residual_jacobian": f"residuals and Jacobian of {RESIDUAL_LENGTHS:,} lengths ({2 * RESIDUAL_LENGTHS:,} poses)",
     "fit_101": "whole fit, 101 lengths",
@@ -26,9 +29,14 @@ TASKS = {
     "judged_101": "… with covariance and what is determined, 101 lengths",
     "judged_10000": "… with covariance and what is determined, 10,000 lengths",
     "judged_1000000": "… with covariance and what is determined, 1,000,000 lengths",
+    "cold_101": "cold start: zero offsets and signs of 7 joints unknown, 101 lengths, the slowest of 20",
     "recalibrate": f"{REPEATED_FITS:,} fits of {REPEATED_LENGTHS} lengths, new noise each, one thread",
     "recalibrate_2": f"{REPEATED_FITS:,} fits of {REPEATED_LENGTHS} lengths, new noise each, two threads",
     "peak_1000000_mb": "memory beyond the readings at the peak of the fit to 1,000,000 lengths",
+}
+KINDS: dict[str, str] = {
+    **{f"touch_{kind}": f"a touch of a {kind}" for kind in TOUCHED},
+    **{f"touch_{effect}": f"a touch of a bar, {effect} in the model" for effect in EFFECTS},
 }
 
 

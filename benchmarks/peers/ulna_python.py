@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from benchmarks.peers import Contender, Times
-from benchmarks.readings import ENCODER_NOISE_RAD, F64, HELD, START, TRUTH, Lengths, lengths
+from benchmarks.readings import ENCODER_NOISE_RAD, F64, FOUND, HELD, START, TRUTH, Lengths, lengths
 from benchmarks.tasks import REPEATED_FITS, REPEATED_LENGTHS, measure_functions
 from ulna import _core
 
@@ -45,9 +45,28 @@ def _recalibrate_s(threads: int) -> float:
     return spent
 
 
+def _cold_start_s(starts: int = 20) -> float:
+    """Slowest of some fits that know neither the zero offsets nor which way any encoder counts."""
+    data, slowest = lengths(REPEATED_LENGTHS), 0.0
+    offsets = 4 * np.arange(6)
+    for seed in range(starts):
+        rng = np.random.default_rng(seed)
+        counts = rng.choice([-1.0, 1.0], 7)
+        start = TRUTH + np.where(np.arange(27) % 4 > 1, 1.0, 0.0) * rng.uniform(-100.0, 100.0, 27)
+        start[offsets] = rng.uniform(-np.pi, np.pi, 6)
+        problem = _problem(start, Lengths(data.q_rad * counts, data.p_rad * counts, data.length_mm))
+        since = time.perf_counter()
+        fitted = _core.fit(problem, HOLD, start="search", seed=seed, unknown_signs=np.ones(7, dtype=np.bool_))
+        slowest = max(slowest, time.perf_counter() - since)
+        if not fitted.rms_mm < FOUND:
+            raise RuntimeError(f"cold start {seed}: ended with an rms of {fitted.rms_mm:.3g} mm")
+    return slowest
+
+
 def contender() -> Contender:
     def measure(quick: bool) -> Times:
         times = measure_functions(_forward, None, _fit, quick, repeat=False, judged=True)
+        times["cold_101"] = _cold_start_s()
         times["recalibrate"] = min(_recalibrate_s(1) for _ in range(3))
         if hasattr(os, "sched_setaffinity"):
             os.sched_setaffinity(0, range(os.cpu_count() or 1))

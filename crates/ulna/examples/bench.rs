@@ -1,13 +1,17 @@
-//! Timings of the core, one thread unless said otherwise; `--json` prints them for `make bench`.
+//! Timings of the core, one thread unless said otherwise, printed as JSON for `make bench`.
 //!
 //! The arm is the assumed truth of Cheng 2011, Table 2 (bent probe, r = 10 mm); angles are uniform in ±3 rad; fits start
 //! from Table 3. Each figure is the best of several runs: the machine is shared, and what is slower is somebody else.
 
+mod shared;
+
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use shared::{Dropped, TABLE_2, arm, best};
+use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
-use ulna::arm::{Arm, Joint, JointModel, Probe, Unit};
+use ulna::arm::Unit;
 use ulna::assembly::Assembly;
 use ulna::calibrate::{Options, Start, fit, solve};
 use ulna::kinematics::{Angles, Chain, Poses, batch};
@@ -17,17 +21,9 @@ use ulna::problem::Problem;
 use ulna::residuals::length::LengthRows;
 use ulna::residuals::{Noise, Weighing};
 use ulna::simd::{Columns, simd_level};
-use ulna::solver::{LeastSquares, RowBlock, RowSink};
+use ulna::solver::LeastSquares;
 
-const H: f64 = std::f64::consts::FRAC_PI_2;
-const TABLE_2: [[f64; 4]; 6] = [
-    [0.0, -H, 40.0, 250.0],
-    [2.2689, H, -40.0, 0.0],
-    [0.0, -H, 30.0, 450.0],
-    [2.2689, H, -30.0, 0.0],
-    [0.0, -H, 30.0, 450.0],
-    [2.2689, H, -30.0, 0.0],
-];
+/// Where the fits start: its Table 3.
 const TABLE_3: [[f64; 4]; 6] = [
     [0.1, -1.57, 35.0, 260.0],
     [2.2, 1.57, -35.0, 0.0],
@@ -36,39 +32,6 @@ const TABLE_3: [[f64; 4]; 6] = [
     [0.1, -1.57, 35.0, 400.0],
     [2.2, 1.57, -35.0, 0.0],
 ];
-
-fn arm(dh: [[f64; 4]; 6], tip_mm: [f64; 3]) -> Arm {
-    let joint = |p: [f64; 4]| Joint {
-        theta0_rad: p[0],
-        alpha_rad: p[1],
-        a_mm: p[2],
-        d_mm: p[3],
-        beta_rad: 0.0,
-        sign: 1.0,
-        model: JointModel::Dh,
-    };
-    let probe = Probe { name: "bent".into(), tip_mm };
-    Arm::new(dh.map(joint).to_vec(), 1.0, vec![probe]).expect("a valid arm")
-}
-
-/// Seconds of the best of `runs`.
-fn best(runs: usize, mut work: impl FnMut()) -> f64 {
-    let once = |work: &mut dyn FnMut()| {
-        let begin = Instant::now();
-        work();
-        begin.elapsed().as_secs_f64()
-    };
-    (0..runs).map(|_| once(&mut work)).fold(f64::MAX, f64::min)
-}
-
-/// Takes rows and does nothing with them.
-struct Dropped;
-
-impl RowSink for Dropped {
-    fn fold(&mut self, block: &mut RowBlock) {
-        black_box(block.rows);
-    }
-}
 
 fn angles(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
     (0..count).map(|_| rng.random_range(-3.0..3.0)).collect()
@@ -105,7 +68,7 @@ fn searches(rng: &mut Xoshiro256PlusPlus, count: usize) -> (usize, f64) {
         for (j, unit) in truth.parameter_units().into_iter().enumerate() {
             match unit {
                 Unit::Mm => start[j] += rng.random_range(-100.0..100.0),
-                Unit::Rad if j % 4 == 0 => start[j] += rng.random_range(-2.0 * H..2.0 * H),
+                Unit::Rad if j % 4 == 0 => start[j] += rng.random_range(-PI..PI),
                 _ => {}
             }
         }

@@ -1,0 +1,181 @@
+//! What a reading costs by the artefact it touches, and by what the arm does beyond its geometry; JSON for `make bench`.
+//!
+//! Nanoseconds of a touch, one thread: residuals and derivatives of all 27 parameters, the placement eliminated, as in
+//! every iteration of a fit. The arm and the timing are those of `bench`. A bar has its two ends touched in each place;
+//! a plate nine balls; a sphere, a plane and a seat are touched 20 times each. Effects are timed on the bars.
+
+mod shared;
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use shared::{Dropped, TABLE_2, arm, best};
+use std::f64::consts::PI;
+use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics};
+use ulna::assembly::Assembly;
+use ulna::inverse::{Limits, posture_for_point};
+use ulna::kinematics::{Angles, tip_mm};
+use ulna::monitor::Unwatched;
+use ulna::problem::{BallArtefact, Problem};
+use ulna::residuals::points::{Features, Frame, Uncertainty};
+use ulna::residuals::surface::Side;
+use ulna::residuals::{TouchRows, Weighing};
+use ulna::solver::LeastSquares;
+
+const TIP_MM: [f64; 3] = [10.0, 0.0, 200.0];
+const BALL_MM: f64 = 6.0;
+const SPHERE_MM: f64 = 25.0;
+const TOUCHES: usize = 18_000;
+
+type Point = [f64; 3];
+
+/// Touched points of one standing about a place, each with the feature it is of.
+type Standing = fn(&mut Xoshiro256PlusPlus) -> Vec<(Point, usize)>;
+
+fn direction(rng: &mut Xoshiro256PlusPlus) -> Point {
+    loop {
+        let v: Point = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if norm > 0.1 && norm < 1.0 {
+            return v.map(|x| x / norm);
+        }
+    }
+}
+
+/// Ends of a bar of 300 mm.
+fn bar(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    let along = direction(rng);
+    vec![([0.0; 3], 0), (along.map(|x| 300.0 * x), 1)]
+}
+
+/// Nine balls, 100 mm apart, level: what a touch costs does not depend on how the plate stands.
+fn plate(_: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    plate_mm().into_iter().enumerate().map(|(k, at)| (at, k)).collect()
+}
+
+fn plate_mm() -> Vec<Point> {
+    (0..9).map(|k| [100.0 * f64::from(k / 3), 100.0 * f64::from(k % 3), 0.0]).collect()
+}
+
+fn seat(_: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    vec![([0.0; 3], 0); 20]
+}
+
+fn sphere(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    (0..20).map(|_| (direction(rng).map(|x| 0.5 * (SPHERE_MM + BALL_MM) * x), 0)).collect()
+}
+
+fn plane(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    (0..20).map(|_| ([rng.random_range(-150.0..150.0), rng.random_range(-150.0..150.0), 0.0], 0)).collect()
+}
+
+/// Readings of standings all over the volume, as many as make `TOUCHES`.
+struct Touched {
+    q_rad: Vec<f64>,
+    feature: Vec<usize>,
+    placement: Vec<i64>,
+}
+
+fn touch(truth: &Arm, standing: Standing, rng: &mut Xoshiro256PlusPlus) -> Touched {
+    let limits = Limits { range_rad: vec![(-PI, PI); 7] };
+    let mut touched = Touched { q_rad: vec![], feature: vec![], placement: vec![] };
+    let mut place = 0;
+    while touched.feature.len() < TOUCHES {
+        let q: Vec<f64> = (0..7).map(|_| rng.random_range(-3.0..3.0)).collect();
+        let origin = tip_mm(truth, 0, &q);
+        let points = standing(rng);
+        let poses: Option<Vec<Vec<f64>>> = points
+            .iter()
+            .map(|(at, _)| {
+                let point = origin + nalgebra::Vector3::from(*at);
+                posture_for_point(truth, 0, point, &limits, 10, rng)
+            })
+            .collect();
+        let Some(poses) = poses else { continue };
+        touched.q_rad.extend(poses.into_iter().flatten());
+        touched.feature.extend(points.iter().map(|(_, feature)| feature));
+        touched.placement.extend(std::iter::repeat_n(place, points.len()));
+        place += 1;
+    }
+    touched
+}
+
+/// Nanoseconds a touch.
+fn cost(problem: &mut Problem, touches: usize) -> f64 {
+    let x = problem.parameters();
+    let free: Vec<usize> = (0..problem.parameter_count()).collect();
+    problem.weigh(&x, Weighing::Full);
+    let mut assembly = Assembly::new(problem, &free, &[], &Unwatched);
+    let seconds = best(60, || assembly.rows(&x, true, &mut Dropped).expect("rows"));
+    seconds * 1e9 / touches as f64
+}
+
+fn of_points(arm: &Arm, touched: &Touched, coordinates_mm: &[Point]) -> Problem {
+    let labels: Vec<String> = (0..coordinates_mm.len()).map(|k| k.to_string()).collect();
+    let features = Features {
+        name: "artefact",
+        labels: &labels,
+        coordinates_mm,
+        u: Uncertainty::None,
+        fitted: false,
+        frame: Frame::Free,
+    };
+    let mut problem = Problem::new(arm.clone(), None).expect("a valid problem");
+    problem.add_points(&features, rows(touched, &vec![0; touched.feature.len()])).expect("valid rows");
+    problem
+}
+
+fn rows<'a>(touched: &'a Touched, probe: &'a [usize]) -> TouchRows<'a> {
+    let poses = Angles::cold(&touched.q_rad);
+    TouchRows { poses, probe, feature: &touched.feature, placement: &touched.placement }
+}
+
+fn main() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(2011);
+    let truth = arm(TABLE_2, TIP_MM);
+    let mut costs: Vec<(&str, f64)> = Vec::new();
+
+    let bars = touch(&truth, bar, &mut rng);
+    let ends = [[0.0; 3], [300.0, 0.0, 0.0]];
+    for (name, standing, features) in
+        [("plate", plate as Standing, plate_mm()), ("seat", seat as Standing, vec![[0.0; 3]])]
+    {
+        let touched = touch(&truth, standing, &mut rng);
+        costs.push((name, cost(&mut of_points(&truth, &touched, &features), touched.feature.len())));
+    }
+    costs.insert(0, ("bar", cost(&mut of_points(&truth, &bars, &ends), bars.feature.len())));
+
+    for name in ["sphere", "plane"] {
+        let touched = touch(&truth, if name == "sphere" { sphere } else { plane }, &mut rng);
+        let probe = vec![0; touched.feature.len()];
+        let mut problem = Problem::new(truth.clone(), None).expect("a valid problem");
+        if name == "sphere" {
+            let ball = BallArtefact {
+                name: "ball",
+                diameter_mm: SPHERE_MM,
+                u_mm: 0.0,
+                fitted: false,
+                side: Side::Outside,
+                balls_mm: &[BALL_MM],
+            };
+            problem.add_sphere(&ball, rows(&touched, &probe)).expect("valid rows");
+        } else {
+            problem.add_plane(&[BALL_MM], rows(&touched, &probe)).expect("valid rows");
+        }
+        costs.push((name, cost(&mut problem, touched.feature.len())));
+    }
+
+    let body = Body { mass_kg: 1.0, centre_mm: [0.0, 0.0, 50.0] };
+    let compliance = Compliance { rad_per_nm: vec![1e-6; 7], bodies: vec![body; 7], gravity: [0.0, 0.0, -1.0] };
+    for (name, effects) in [
+        ("harmonics 1", Effects { harmonics: Some(Harmonics::zero(&[1], 7)), ..Effects::default() }),
+        ("harmonics 1, 2", Effects { harmonics: Some(Harmonics::zero(&[1, 2], 7)), ..Effects::default() }),
+        ("expansion", Effects { expansion: Some(Expansion { per_kelvin: vec![1e-5; 7] }), ..Effects::default() }),
+        ("compliance", Effects { compliance: Some(compliance), ..Effects::default() }),
+    ] {
+        let arm = truth.with_effects(effects).expect("valid effects");
+        costs.push((name, cost(&mut of_points(&arm, &bars, &ends), bars.feature.len())));
+    }
+
+    let list: Vec<String> = costs.iter().map(|(name, ns)| format!("\"{name}\": {ns:.2}")).collect();
+    println!("{{{}}}", list.join(", "));
+}
