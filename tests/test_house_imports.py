@@ -11,6 +11,7 @@ PYTHON_LAYERS = [
     {"_core"},
     {"errors", "cores"},
     {"effects"},
+    {"directions"},
     {"model"},
     {"frames"},
     {"study"},

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.cores import available_cores
+from ulna.directions import steps, worth_naming
 from ulna.model import Arm
 
 F64 = NDArray[np.float64]
@@ -21,11 +22,8 @@ _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
 MOVES_MM = 1e-3
-"""A lost direction matters at a pose where a step along it as large as a drawing leaves open, `DRAWN_MM` or `DRAWN_RAD`
-of its leading parameter, moves the tip by more than this, mm."""
-DRAWN_MM, DRAWN_RAD = 1.0, 0.01
-_DRAWN = {"mm": DRAWN_MM, "rad": DRAWN_RAD, "1/K": 3e-5, "rad/(N m)": 1e-3}
-"""What may be of each unit before anybody has measured: a drawing, a material, a bearing."""
+"""A lost direction matters at a pose where a step along it moves the tip by more than this, mm: a step as large as a
+drawing leaves open (`ulna.directions.DRAWN`)."""
 
 
 class TipUncertainty:
@@ -45,9 +43,7 @@ class TipUncertainty:
         for row, direction in enumerate(self._lost):
             for name, weight in direction["combination"].items():
                 self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
-            units = dict(zip(arm.parameter_names, arm.parameter_units, strict=True))
-            sizes = [abs(weight) / _DRAWN[units[name]] for name, weight in direction["combination"].items()]
-            self._directions[row] /= max(sizes)
+            self._directions[row] /= max(steps(direction["combination"]).values())
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 
@@ -121,7 +117,7 @@ def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
 
 
 def _note(direction: dict[str, Any], probe: str) -> str:
-    names = ", ".join(direction["combination"])
+    names = ", ".join(worth_naming(direction["combination"]))
     because, remedy = (direction[key].rstrip(".") for key in ("because", "remedy"))
     return (
         f"u_x, u_y, u_z are left empty where points of probe '{probe}' depend on a combination of {names} that the "

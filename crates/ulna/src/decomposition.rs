@@ -100,6 +100,12 @@ impl Decomposition {
         (0..self.kept.len()).map(|j| self.v[(j, i)]).collect()
     }
 
+    /// How far each unknown may be off along singular direction `i`, physical; sigma: of a whitened residual.
+    pub fn u_along(&self, i: usize, sigma: f64) -> Vec<f64> {
+        let factor = sigma / self.singular_values[i];
+        self.physical(&self.vector(i)).into_iter().map(|step| factor * step).collect()
+    }
+
     /// `J⁺ b` for `b` given as a column of the triangle: minimum norm in scaled coordinates, over all unknowns.
     pub fn pseudo_solve(&self, triangle: &Triangle, column: usize) -> Vec<f64> {
         let rows = self.unknowns.min(column + 1);

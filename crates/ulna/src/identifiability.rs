@@ -45,7 +45,7 @@ const COMPLIANCE_RAD_PER_NM: f64 = 1e-3;
 
 impl Known {
     /// How well a parameter of this unit is known.
-    fn of(self, unit: Unit) -> f64 {
+    pub(crate) fn of(self, unit: Unit) -> f64 {
         match unit {
             Unit::Rad => self.angle_rad,
             Unit::Mm => self.length_mm,
@@ -79,7 +79,8 @@ pub struct Identifiability {
     pub weak: Vec<WeakDirection>,
     /// The lost directions as vectors over the free parameters.
     pub lost_directions: Vec<Vec<f64>>,
-    /// For each free parameter, whether it takes part in a lost direction.
+    /// For each free parameter, whether it is left open: it takes part in a lost direction, and by more than is nothing
+    /// beside its uncertainty.
     pub in_lost: Vec<bool>,
     /// Free parameters of which the readings say next to nothing: what is known of them is their prior.
     pub from_prior: Vec<String>,
@@ -133,7 +134,7 @@ pub(crate) fn analyse(decomposition: &Decomposition, question: &Question) -> Ide
             _ => 0.0,
         },
         from_prior: from_prior(decomposition, question, &names),
-        in_lost: (0..count).map(|j| directions.iter().any(|d| d[j] != 0.0)).collect(),
+        in_lost: left_open(&directions, decomposition, question),
         weak: weak(decomposition, question, &names),
         lost_directions: directions,
         singular_values,
@@ -154,6 +155,34 @@ fn from_prior(decomposition: &Decomposition, question: &Question, names: &[Strin
         question.priors[k].is_some_and(|(_, u)| after >= NO_NEWS * u)
     };
     (0..count).filter(no_news).map(|k| names[k].clone()).collect()
+}
+
+/// A step that is less than this part of what is known of a parameter is nothing.
+const NOTHING: f64 = 0.1;
+
+/// Whether a lost direction leaves each free parameter open.
+///
+/// A direction can be lost but for its noise: a tip a hair off the last axis shifts everything a hair along with that
+/// axis. So the direction moves as far as an arm is known beforehand, and who is moved by less than a tenth of that, and
+/// of its own uncertainty, is known all the same.
+fn left_open(directions: &[Vec<f64>], decomposition: &Decomposition, question: &Question) -> Vec<bool> {
+    let count = question.scene.free.len();
+    let known = |j: usize| match question.priors[j] {
+        Some((_, u)) => u,
+        None => question.known.of(question.units[question.scene.free[j]]),
+    };
+    let covariance = if directions.is_empty() { vec![] } else { decomposition.covariance() };
+    let mut open = vec![false; count];
+    for direction in directions {
+        let taking_part: Vec<usize> = (0..count).filter(|&j| direction[j] != 0.0).collect();
+        let most = taking_part.iter().map(|&j| known(j) / direction[j].abs()).fold(f64::INFINITY, f64::min);
+        for j in taking_part {
+            let step = most * direction[j].abs();
+            let u = question.sigma * covariance[j * count + j].sqrt();
+            open[j] |= step > NOTHING * known(j) || step > NOTHING * u || u.is_nan();
+        }
+    }
+    open
 }
 
 fn combination(direction: &[f64], names: &[String]) -> Vec<(String, f64)> {
@@ -249,14 +278,8 @@ fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) ->
     };
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {
-        let factor = question.sigma / decomposition.singular_values[i];
-        let vector = decomposition.vector(i);
-        let mut u = vec![0.0; question.scene.free.len()];
-        let mut times_known = vec![0.0; question.scene.free.len()];
-        for (a, &j) in decomposition.kept.iter().enumerate() {
-            u[j] = factor * vector[a] / decomposition.norms[a];
-            times_known[j] = u[j].abs() / known(j);
-        }
+        let u = decomposition.u_along(i, question.sigma);
+        let times_known: Vec<f64> = u.iter().enumerate().map(|(j, u)| u.abs() / known(j)).collect();
         let leading = (0..u.len()).max_by(|&a, &b| times_known[a].total_cmp(&times_known[b])).unwrap_or(0);
         if u.is_empty() || times_known[leading] <= 1.0 {
             continue;

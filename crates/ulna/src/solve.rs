@@ -1,6 +1,7 @@
 //! The way to the minimum: weigh, pin what cannot be seen, descend, notice a poor end and search on, weigh again.
 
 use crate::assembly::Assembly;
+use crate::decomposition::Decomposition;
 use crate::error::{Error, Result};
 use crate::families::pins;
 use crate::identifiability::Known;
@@ -14,6 +15,7 @@ use crate::signs;
 use crate::solver::LeastSquares;
 use crate::solver::gram::{Cost, Gram};
 use crate::solver::lm::{self, Report, Termination, minimize, minimize_from};
+use crate::solver::triangle::Triangle;
 
 /// What is known of the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -55,6 +57,12 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    fn of_lm(&self) -> lm::Options {
+        lm::Options { max_iterations: self.max_iterations, ..lm::Options::default() }
+    }
+}
+
 /// Why starts were searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchReason {
@@ -87,7 +95,8 @@ pub struct Solution {
 const MANY: usize = 20_000;
 const PART: usize = 2_000;
 /// A family of parameters that was pinned because the start could not tell its members apart is let go where that
-/// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test).
+/// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test). It
+/// is let go as well where the readings tell its members apart better than a drawing does.
 const SIGNIFICANT: f64 = 4.0;
 /// Scatter of a reading taken for granted before there is a fit to show it, mm.
 pub(crate) const ASSUMED_SCATTER_MM: f64 = 0.02;
@@ -122,7 +131,6 @@ pub fn solve_from(
     let geometry: Vec<usize> = free.iter().copied().filter(|&j| j < problem.arm().geometry_count()).collect();
     let (mut geometry_pins, gram) = pins(problem, &geometry, &start, monitor)?;
     let cost_start = gram.cost();
-    let options_lm = lm::Options { max_iterations: options.max_iterations, ..lm::Options::default() };
     let plan = |throw| Plan { throw, most_starts: options.search_starts, seed: options.seed };
     let given: Vec<f64> = geometry.iter().map(|&j| start[j]).collect();
     let (mut searched_starts, mut search_reason, mut undecided_signs) = (0, None, vec![]);
@@ -146,13 +154,13 @@ pub fn solve_from(
         place(&mut here, &found.x);
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::Asked));
     } else {
-        let mut first = Way::new(problem, &geometry, monitor, options_lm, &here, geometry_pins.clone());
+        let mut first = Way::new(problem, &geometry, monitor, *options, &here, geometry_pins.clone());
         descended = Some(if from.is_some() { first.descend()? } else { first.first_descent(gram)? });
         here = first.parameters();
     }
     let whole_pins =
         if geometry.len() == free.len() { geometry_pins.clone() } else { pins(problem, free, &start, monitor)?.0 };
-    let mut way = Way::new(problem, free, monitor, options_lm, &here, whole_pins);
+    let mut way = Way::new(problem, free, monitor, *options, &here, whole_pins);
     let mut report = match descended.filter(|_| geometry.len() == free.len()) {
         Some(report) => report,
         None => way.descend()?,
@@ -196,7 +204,7 @@ struct Way<'a> {
     problem: &'a mut Problem,
     free: &'a [usize],
     monitor: &'a dyn Monitor,
-    options: lm::Options,
+    options: Options,
     /// all parameters, those that are not free as they stay
     start: Vec<f64>,
     pins: Vec<Pin>,
@@ -211,7 +219,7 @@ impl<'a> Way<'a> {
         problem: &'a mut Problem,
         free: &'a [usize],
         monitor: &'a dyn Monitor,
-        options: lm::Options,
+        options: Options,
         here: &[f64],
         pins: Vec<Pin>,
     ) -> Way<'a> {
@@ -230,7 +238,7 @@ impl<'a> Way<'a> {
     /// Descends from where it is.
     fn descend(&mut self) -> Result<Report> {
         let mut assembly = Assembly::new(self.problem, self.free, &self.pins, self.monitor);
-        minimize(&mut assembly, &mut self.x, &self.options, self.monitor)
+        minimize(&mut assembly, &mut self.x, &self.options.of_lm(), self.monitor)
     }
 
     /// Descends from the start, where the normal equations without pins are known already.
@@ -239,7 +247,7 @@ impl<'a> Way<'a> {
             self.start_from_a_part(gram.cost())?;
         } else if self.pins.is_empty() {
             let mut assembly = Assembly::new(self.problem, self.free, &self.pins, self.monitor);
-            return minimize_from(&mut assembly, &mut self.x, gram, &self.options, self.monitor);
+            return minimize_from(&mut assembly, &mut self.x, gram, &self.options.of_lm(), self.monitor);
         }
         self.descend()
     }
@@ -250,7 +258,7 @@ impl<'a> Way<'a> {
         let mut x = self.x.clone();
         let part = self.problem.thinned(PART);
         let mut assembly = Assembly::new(&part, self.free, &self.pins, self.monitor);
-        minimize(&mut assembly, &mut x, &self.options, &Unwatched)?;
+        minimize(&mut assembly, &mut x, &self.options.of_lm(), &Unwatched)?;
         let mut cost = Cost::default();
         Assembly::new(self.problem, self.free, &self.pins, self.monitor).rows(&x, false, &mut cost)?;
         if cost.0 < cost_given {
@@ -273,12 +281,32 @@ impl<'a> Way<'a> {
         let known = self.problem.equations() + self.problem.priors().len();
         let dof = known.saturating_sub(unknowns).max(1);
         let variance = if self.problem.noise().is_some() { 1.0 } else { released.cost / dof as f64 };
-        if report.cost - released.cost > SIGNIFICANT * families as f64 * variance {
+        let better = report.cost - released.cost > SIGNIFICANT * families as f64 * variance;
+        if better || self.tells_apart(families, variance.sqrt())? {
             *report = added(*report, released);
         } else {
             (self.pins, self.x) = pinned;
         }
         Ok(())
+    }
+
+    /// Whether the readings determine, from where the fit is, the `families` directions that they see least, and better
+    /// than an arm is known before. sigma: of a whitened residual.
+    fn tells_apart(&mut self, families: usize, sigma: f64) -> Result<bool> {
+        let parameters = self.parameters();
+        let symmetries: Vec<Vec<f64>> =
+            self.pins.iter().map(|pin| pin.direction_at(self.problem, self.free, &parameters)).collect();
+        let mut assembly = Assembly::new(self.problem, self.free, &[], self.monitor);
+        let mut triangle = Triangle::new(self.free.len());
+        assembly.rows(&self.x, true, &mut triangle)?;
+        let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
+        let seen = Decomposition::new(&triangle, self.free.len(), assembly.natural_scale(), &slices);
+        let units = self.problem.parameter_units();
+        let known = |unknown: usize| self.options.known.of(units[self.free[unknown]]);
+        let least = seen.rank.saturating_sub(families)..seen.rank;
+        let all_seen = seen.rank + symmetries.len() == seen.kept.len();
+        let well = |i: usize| seen.u_along(i, sigma).iter().enumerate().all(|(unknown, u)| u.abs() <= known(unknown));
+        Ok(all_seen && least.into_iter().all(well))
     }
 
     /// Where a loss is asked for: lets it weigh the readings, outliers less, until that changes nothing, all directions

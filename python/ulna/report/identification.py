@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from ulna.effects import extra_of
+from ulna.directions import unit_of, worth_naming
 from ulna.identify import Identification
 from ulna.model import Arm
 from ulna.report.digits import uncertainty
@@ -87,17 +87,14 @@ def combination(weights: Mapping[str, float]) -> str:
     """One parameter by its name; several with the steps, in rad and mm, that together change no residual."""
     if len(weights) == 1:
         return next(iter(weights))
-    ordered = sorted(weights.items(), key=lambda item: -abs(item[1]))
-    return "together: " + ", ".join(f"{name} {_step(weight)} {_unit(name)}" for name, weight in ordered)
+    ordered = sorted(worth_naming(weights).items(), key=lambda item: -abs(item[1]))
+    unnamed = len(weights) - len(ordered)
+    return (
+        "together: "
+        + ", ".join(f"{name} {_step(weight)} {unit_of(name)}" for name, weight in ordered)
+        + (f", and {unnamed} more by next to nothing" if unnamed else "")
+    )
 
 
 def _step(weight: float) -> str:
     return f"{weight:+.3g}".replace("-", "−").replace("e−0", "e−")
-
-
-def _unit(name: str) -> str:
-    if name.startswith("joint."):
-        own = {"theta0": "rad", "alpha": "rad", "beta": "rad", "expansion": "1/K", "compliance": "rad/(N m)"}
-        tail = name.rsplit(".", 1)[-1]
-        return own.get(tail, "rad" if extra_of(name) else "mm")
-    return "mm"
