@@ -14,6 +14,7 @@ from tests.cli_runs import platinum, run
 
 import ulna
 from ulna.effects import Effects
+from ulna.extras import compared
 from ulna.model import Arm
 from ulna.study import Artefact, FitOptions, Prior, Readings, Study
 
@@ -71,9 +72,38 @@ def test_a_block_that_explains_readings_earns_its_place() -> None:
 
 def test_a_block_that_explains_nothing_does_not() -> None:
     study = study_of(platinum(), platinum(wrong=0.3), extras=["encoder-harmonics"], harmonics=[1, 2, 3])
-    (judged,) = ulna.calibrate(study).extras
-    assert judged.verdict in ("undecided", "not-earned")
-    assert judged.with_mm > 0.95 * judged.without_mm
+    judged = ulna.calibrate(study).extras
+    assert [entry.order for entry in judged] == [None, 1, 2, 3]
+    for entry in judged:
+        assert entry.verdict in ("undecided", "not-earned")
+        assert entry.with_mm > 0.95 * entry.without_mm
+
+
+def test_the_order_that_is_there_is_told_from_the_one_that_is_not() -> None:
+    study = study_of(eccentric(3e-4), platinum(wrong=0.3), extras=["encoder-harmonics"], harmonics=[1, 2])
+    block, first, second = ulna.calibrate(study).extras
+    assert [(entry.extra, entry.order) for entry in (block, first, second)] == [
+        ("encoder-harmonics", None),
+        ("encoder-harmonics", 1),
+        ("encoder-harmonics", 2),
+    ]
+    assert (block.verdict, first.verdict) == ("earned", "earned")
+    assert second.verdict in ("undecided", "not-earned")
+
+
+def test_a_verdict_by_few_groups_needs_more() -> None:
+    """Student's factor: two standard deviations of chance would be called earned far too often with three groups."""
+    rng = np.random.default_rng(1)
+    for groups in (2, 3, 5, 10):
+        verdicts = []
+        for _ in range(4000):
+            gains = rng.standard_normal(groups)
+            whole = [{"form_mm": 10.0 - float(gain)} for gain in gains]
+            found = compared("compliance", None, [{"form_mm": 10.0}] * groups, whole, "placement")
+            assert found is not None
+            verdicts.append(found.verdict)
+        for verdict in ("earned", "not-earned"):
+            assert verdicts.count(verdict) / 4000 == pytest.approx(0.159, abs=0.025)
 
 
 def test_each_block_is_judged_by_itself() -> None:

@@ -2,7 +2,8 @@
 
 The fit always gets better with more parameters. So every block is left out once, and both models are fitted without
 each group of readings in turn and compared on that group: the block has earned its place where the errors left out fall
-by more than their own uncertainty (the standard error of the differences, group by group).
+by more than their own uncertainty (the standard error of the differences, group by group; of few groups more is asked,
+by Student's factor). Of harmonics of several orders each is judged besides, as long as they are few.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from scipy.special import stdtrit
 
 from ulna.assembly import assemble
 from ulna.effects import PATTERNS
@@ -28,6 +30,10 @@ Verdict = Literal["earned", "undecided", "not-earned"]
 #: more placements than this are dealt into folds
 MOST_GROUPS = 10
 FOLDS = 5
+#: more orders of harmonics than this are judged as one block only: each costs as many fits as there are groups
+MOST_ORDERS = 3
+#: one standard deviation of a normal distribution, one-sided: what a difference must exceed by Student's factor
+CONFIDENCE = 0.8413
 
 #: what a model is judged by: the first of these that the readings left out give
 SCORES = (
@@ -57,6 +63,8 @@ class JudgedExtra:
     by: str
     """What was left out together."""
     verdict: Verdict
+    order: int | None = None
+    """Of harmonics of several orders: which of them; None: the whole block."""
 
     def as_dict(self) -> dict[str, Any]:
         """As in `result.json`, list `extras`."""
@@ -69,16 +77,27 @@ def judge_extras(study: Study, progress: Progress | None = None) -> list[JudgedE
         by, groups = _groups(study)
     except UlnaInputError:
         return []
-    runs = 1 + len(study.fit.extras)
-    told = _Told(progress, runs * len(groups))
+    parts = _parts(study)
+    told = _Told(progress, (1 + len(parts)) * len(groups))
     whole = [_left_out(study, fold, told) for fold in groups]
     judged = []
-    for extra in study.fit.extras:
-        reduced = [_left_out(_without(study, extra), fold, told) for fold in groups]
-        found = _compared(extra, reduced, whole, by)
+    for extra, order in parts:
+        reduced = [_left_out(_without(study, extra, order), fold, told) for fold in groups]
+        found = compared(extra, order, reduced, whole, by)
         if found is not None:
             judged.append(found)
     return judged
+
+
+def _parts(study: Study) -> list[tuple[str, int | None]]:
+    """What is judged: each block, and of a few orders of harmonics each order."""
+    parts: list[tuple[str, int | None]] = []
+    for extra in study.fit.extras:
+        parts.append((extra, None))
+        orders = sorted(set(study.fit.harmonics)) if extra == "encoder-harmonics" else []
+        if 1 < len(orders) <= MOST_ORDERS:
+            parts += [(extra, order) for order in orders]
+    return parts
 
 
 def _groups(study: Study) -> tuple[str, list[Fold]]:
@@ -90,9 +109,10 @@ def _groups(study: Study) -> tuple[str, list[Fold]]:
     return (by, groups) if len(groups) <= MOST_GROUPS else folds(study, FOLDS)
 
 
-def _without(study: Study, extra: str) -> Study:
-    """The study with a block held as the arm file has it: at zero, usually."""
-    hold = [*study.fit.hold, *PATTERNS[extra]]
+def _without(study: Study, extra: str, order: int | None) -> Study:
+    """The study with a block, or one order of it, held as the arm file has it: at zero, usually."""
+    patterns = PATTERNS[extra] if order is None else [f"joint.*.c{order}", f"joint.*.s{order}"]
+    hold = [*study.fit.hold, *patterns]
     return dataclasses.replace(study, fit=dataclasses.replace(study.fit, hold=hold))
 
 
@@ -117,7 +137,10 @@ def _left_out(study: Study, fold: Fold, told: _Told) -> Figures:
     return figures(arm.with_parameters(fitted.parameters[: len(arm.parameter_names)]), test)[1]
 
 
-def _compared(extra: str, reduced: list[Figures], whole: list[Figures], by: str) -> JudgedExtra | None:
+def compared(
+    extra: str, order: int | None, reduced: list[Figures], whole: list[Figures], by: str
+) -> JudgedExtra | None:
+    """Both models' figures on each group left out, as a verdict; None where no figure is in both."""
     for figure in SCORES:
         pairs = [(a[figure], b[figure]) for a, b in zip(reduced, whole, strict=True) if figure in a and figure in b]
         if pairs:
@@ -129,6 +152,6 @@ def _compared(extra: str, reduced: list[Figures], whole: list[Figures], by: str)
     better = float(gains.mean())
     u = float(gains.std(ddof=1) / np.sqrt(len(gains))) if len(gains) > 1 else None
     verdict: Verdict = "undecided"
-    if u is not None and abs(better) > u:
+    if u is not None and abs(better) > u * stdtrit(len(gains) - 1, CONFIDENCE):
         verdict = "earned" if better > 0 else "not-earned"
-    return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict)
+    return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)

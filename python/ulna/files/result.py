@@ -168,6 +168,7 @@ class ExtraEntry(Open):
     groups: int
     by: str
     verdict: Literal["earned", "undecided", "not-earned"]
+    order: int | None = None
 
 
 class Figures(Open):

@@ -21,7 +21,7 @@ def judged_extras(extras: Sequence[JudgedExtra]) -> list[RenderableType]:
         return []
     rows = [
         (
-            entry.extra,
+            entry.extra if entry.order is None else f"… order {entry.order} alone",
             figure_mm(entry.without_mm),
             figure_mm(entry.with_mm),
             figure_mm(entry.better_by_mm),
@@ -39,5 +39,5 @@ def judged_extras(extras: Sequence[JudgedExtra]) -> list[RenderableType]:
     )
     text += "error over the groups."
     if any(entry.verdict != "earned" for entry in extras):
-        text += " What did not earn its place is better left out of fit.extras."
+        text += " What did not earn its place is better left out of fit.extras or fit.harmonics."
     return ["", made, Text(text)]
