@@ -69,8 +69,9 @@ def import_ipa_ur10(
     """A measurement file as a study folder `out`; returns how many readings are fitted and how many held out.
 
     `fit` readings go into study.toml, the rest, if any, into held-out.toml: every `every`-th row from the first on, or
-    with `spread` the middle row of each of `fit` equal blocks of the file. `standings`: the tracker's frame creeps; its
-    place is taken as new in each of so many equal parts of the file. Raises UlnaInputError; nothing is written then.
+    with `spread` the middle row of each of `fit` equal blocks of the file. `standings`: the tracker's place is taken as
+    new in each of so many equal parts of the file, one placement for each. Raises UlnaInputError; nothing is written
+    then.
     """
     header = _header(path)
     columns = list(COLUMNS.values())
