@@ -21,7 +21,8 @@ def compile_to(output: Path, source: Path, extra: list[str], cxx: bool) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         complaint = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[:200])
-        raise MissingPeerError(f"does not compile here: {complaint.strip()}")
+        # without the paths of this machine, which the page would show
+        raise MissingPeerError(f"does not compile here: {complaint.split('error:')[-1].strip()}")
 
 
 def run(program: Path, arguments: list[str], libraries: Path | None = None) -> str:

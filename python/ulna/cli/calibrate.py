@@ -14,8 +14,8 @@ from ulna.cli.running import guard
 def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
-    Prints the figures before and after, the parameters with their standard uncertainties, and what the readings could
-    not determine, why, and what would help. With -o it writes result.json, arm.toml (the calibrated arm, ready to use)
+    Prints the figures before and after, the parameters with their standard uncertainties, what the readings could not
+    determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far off. With -o it writes result.json, arm.toml (the calibrated arm, ready to use)
     and residuals.csv. Exit code 1 where the fit did not converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]

@@ -27,7 +27,7 @@ def evaluate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Judge an arm, unchanged, on a study's readings: seat scatter, length error, coordinate error.
+    """Judge an arm, unchanged, on a study's readings: seat scatter, length error, coordinate error, form.
 
     The figures come from the readings alone; where artefacts stand is fitted, the arm is not. The study's own arm only
     tells its probes' names. Where the study keeps rows to check a fit (key split), those are judged. With -o it writes
