@@ -15,8 +15,9 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
     Prints the figures before and after, the parameters with their standard uncertainties, what the readings could not
-    determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far off. With -o it writes result.json, arm.toml (the calibrated arm, ready to use)
-    and residuals.csv. Exit code 1 where the fit did not converge.
+    determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far off. With
+    -o it writes result.json, arm.toml (the calibrated arm, ready to use) and residuals.csv. Exit code 1 where the fit
+    did not converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
