@@ -321,7 +321,9 @@ def recalibrate(
     threads: int = 1,
     progress: Progress | None = None,
     uncertainties: bool = True,
+    first: int = 0,
 ) -> tuple[F64, F64, Bool]:
     """Calibrations repeated on new noise: readings are taken as exact for `truth`, the problem's stated noise is drawn
     anew for each run (which starts from the problem's arm). Returns parameters (runs, P), standard uncertainties
-    (runs, P; NaN where held, not determined, or not asked for), converged (runs,)."""
+    (runs, P; NaN where held, not determined, or not asked for), converged (runs,). Run k of all draws from (seed, k);
+    `first`: the k of the first run, where the work is cut."""

@@ -8,11 +8,9 @@ use numpy::{
     PyReadonlyArrayDyn,
 };
 use pyo3::prelude::*;
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 use std::borrow::Cow;
 use ulna::arm::{Compliance, Effects, Expansion};
-use ulna::inverse::{Limits, posture_for_point};
+use ulna::inverse::{Limits, postures_for_points};
 use ulna::kinematics::{self, Angles, Chain, Poses, batch};
 use ulna::simd::Columns;
 
@@ -296,26 +294,12 @@ impl Arm {
             return Err(UlnaError::new_err(message));
         }
         let limits = Limits { range_rad: limits.chunks_exact(2).map(|l| (l[0], l[1])).collect() };
-        let mut postures = vec![f64::NAN; points.len() / 3 * n];
-        let mut reached = vec![false; points.len() / 3];
         let watch = crate::watch::Watch::new(None);
-        let finished = py.detach(|| {
-            let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
-            for (k, point) in points.chunks_exact(3).enumerate() {
-                let point = nalgebra::Point3::new(point[0], point[1], point[2]);
-                if let Some(q) = posture_for_point(&self.inner, probe, point, &limits, tries, &mut rng) {
-                    postures[k * n..(k + 1) * n].copy_from_slice(&q);
-                    reached[k] = true;
-                }
-                if !ulna::monitor::Monitor::keep_going(&watch) {
-                    return false;
-                }
-            }
-            true
-        });
-        if !finished {
+        let found = py.detach(|| postures_for_points(&self.inner, probe, &points, &limits, tries, seed, &watch));
+        let Some(postures) = found else {
             return Err(watch.failure().unwrap_or_else(|| raise(ulna::Error::Interrupted)));
-        }
+        };
+        let reached = postures.chunks_exact(n).map(|q_rad| !q_rad[0].is_nan()).collect();
         Ok((array2(py, postures, n)?, PyArray1::from_vec(py, reached)))
     }
 

@@ -144,7 +144,7 @@ pub fn held_sensitivity<'py>(
 
 /// Calibrations repeated on new noise.
 #[pyfunction]
-#[pyo3(signature = (problem, hold, truth, runs, seed=0, threads=1, progress=None, uncertainties=true))]
+#[pyo3(signature = (problem, hold, truth, runs, seed=0, threads=1, progress=None, uncertainties=true, first=0))]
 #[allow(clippy::too_many_arguments, clippy::type_complexity)]
 pub fn recalibrate<'py>(
     py: Python<'py>,
@@ -156,12 +156,13 @@ pub fn recalibrate<'py>(
     threads: usize,
     progress: Option<Py<PyAny>>,
     uncertainties: bool,
+    first: usize,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<bool>>)> {
     let free = free(&problem, &hold)?;
     let inner = &problem.inner;
     let truth = &truth.inner;
     let done = watched(py, progress, |watch| {
-        let repeat = Repeat { truth, runs, seed, threads, uncertainties };
+        let repeat = Repeat { truth, first, runs, seed, threads, uncertainties };
         monte_carlo::recalibrate(inner, &free, &repeat, watch)
     })?;
     let count = inner.parameter_count();

@@ -131,7 +131,7 @@ fn main() {
     let noisy = problem(&mut rng, 101, Some(noise));
     let mut repeats = Vec::new();
     for threads in [1, 2] {
-        let repeat = Repeat { truth: &truth, runs: 1000, seed: 1, threads, uncertainties: false };
+        let repeat = Repeat { truth: &truth, first: 0, runs: 1000, seed: 1, threads, uncertainties: false };
         let seconds = best(7, || {
             black_box(recalibrate(&noisy, &free, &repeat, &Unwatched).expect("fits"));
         });

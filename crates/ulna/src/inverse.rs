@@ -5,8 +5,13 @@
 
 use crate::arm::Arm;
 use crate::kinematics::{encoder_jacobian, tip_mm};
+use crate::monitor::Monitor;
+use crate::seeds::mix;
 use nalgebra::{DVector, Matrix3, Point3, Vector3};
-use rand::{Rng, RngExt};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a posture may be.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +41,39 @@ pub fn posture_for_point(
         let start = limits.range_rad.iter().map(|&(low, high)| low + (high - low) * rng.random::<f64>());
         descend(arm, probe, point_mm, limits, start.collect())
     })
+}
+
+/// Postures for many points, three coordinates each: row-major, NaN where none was found. None where it was interrupted.
+///
+/// Point k draws from (seed, k), so that the answer does not depend on how the work is cut.
+pub fn postures_for_points(
+    arm: &Arm,
+    probe: usize,
+    points_mm: &[f64],
+    limits: &Limits,
+    tries: usize,
+    seed: u64,
+    monitor: &dyn Monitor,
+) -> Option<Vec<f64>> {
+    let encoders = arm.encoders();
+    let mut postures = vec![f64::NAN; points_mm.len() / 3 * encoders];
+    let stopped = AtomicBool::new(false);
+    postures.par_chunks_exact_mut(encoders).zip(points_mm.par_chunks_exact(3)).enumerate().for_each(
+        |(k, (posture, point))| {
+            if stopped.load(Ordering::Relaxed) {
+                return;
+            }
+            let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(seed, k as u64));
+            let point = Point3::new(point[0], point[1], point[2]);
+            if let Some(q_rad) = posture_for_point(arm, probe, point, limits, tries, &mut rng) {
+                posture.copy_from_slice(&q_rad);
+            }
+            if !monitor.keep_going() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+        },
+    );
+    (!stopped.into_inner()).then_some(postures)
 }
 
 fn descend(arm: &Arm, probe: usize, point_mm: Point3<f64>, limits: &Limits, mut q_rad: Vec<f64>) -> Option<Vec<f64>> {
@@ -76,8 +114,7 @@ fn descend(arm: &Arm, probe: usize, point_mm: Point3<f64>, limits: &Limits, mut 
 mod tests {
     use super::*;
     use crate::arm::samples;
-    use rand::SeedableRng;
-    use rand_xoshiro::Xoshiro256PlusPlus;
+    use crate::monitor::Unwatched;
 
     #[test]
     fn reached_points_are_reached_within_limits() {
@@ -103,5 +140,18 @@ mod tests {
         let limits = Limits { range_rad: vec![(-3.0, 3.0); 7] };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
         assert!(posture_for_point(&arm, 0, Point3::new(2000.0, 0.0, 0.0), &limits, 40, &mut rng).is_none());
+    }
+
+    #[test]
+    fn many_points_do_not_depend_on_how_they_are_cut() {
+        let arm = samples::table2(10.0);
+        let limits = Limits { range_rad: vec![(-2.5, 2.5); 7] };
+        let points: Vec<f64> = (0..150).flat_map(|k| [400.0 + f64::from(k), 3.0 * f64::from(k), 200.0]).collect();
+        let whole = postures_for_points(&arm, 0, &points, &limits, 40, 3, &Unwatched).unwrap();
+        let first = postures_for_points(&arm, 0, &points[..90], &limits, 40, 3, &Unwatched).unwrap();
+        assert_eq!(whole[..first.len()], first);
+        for (q, point) in whole.chunks(7).zip(points.chunks(3)) {
+            assert!((tip_mm(&arm, 0, q) - Point3::new(point[0], point[1], point[2])).norm() <= 1e-9);
+        }
     }
 }

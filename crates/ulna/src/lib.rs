@@ -79,6 +79,8 @@ pub mod propagate;
 pub mod residuals;
 pub mod robust;
 mod search;
+mod seeds;
+
 mod settle;
 mod signs;
 pub mod simd;

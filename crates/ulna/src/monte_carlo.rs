@@ -10,6 +10,7 @@ use crate::monitor::{Monitor, Stage, Unwatched};
 use crate::pins::Pin;
 use crate::problem::Problem;
 use crate::residuals::Weighing;
+use crate::seeds::mix;
 use crate::solve::prepare;
 use crate::solver::lm::{self, Report, minimize};
 use rand::SeedableRng;
@@ -33,6 +34,8 @@ pub struct Run {
 pub struct Repeat<'a> {
     /// The arm that the readings are exact for before noise is added.
     pub truth: &'a Arm,
+    /// The number of the first calibration: of work that is cut, where this piece begins.
+    pub first: usize,
     /// How many calibrations.
     pub runs: usize,
     /// Seed; run k draws from (seed, k), however the work is cut.
@@ -73,12 +76,13 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
         }
         Ok(run)
     };
+    let pieces = repeat.first..repeat.first + repeat.runs;
     if repeat.threads <= 1 {
-        return (0..repeat.runs).map(one).collect();
+        return pieces.map(one).collect();
     }
     match rayon::ThreadPoolBuilder::new().num_threads(repeat.threads).build() {
-        Ok(pool) => pool.install(|| (0..repeat.runs).into_par_iter().map(one).collect()),
-        Err(_) => (0..repeat.runs).map(one).collect(),
+        Ok(pool) => pool.install(|| pieces.into_par_iter().map(one).collect()),
+        Err(_) => pieces.map(one).collect(),
     }
 }
 
@@ -156,10 +160,4 @@ fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[
         }
     }
     Ok(u)
-}
-
-/// Two numbers into one seed (SplitMix64's constants, Steele 2014).
-fn mix(seed: u64, run: u64) -> u64 {
-    let z = seed.wrapping_add(run.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9)
 }

@@ -186,19 +186,19 @@ def arm_toml(arm: Arm) -> str:
     document = arm_document(arm)
     lines = [
         'format = "ulna-arm/1"',
-        f"name = {_toml(arm.name)}",
+        f"name = {toml_value(arm.name)}",
         'units = { length = "mm", angle = "rad" }',
     ]
-    lines += [f"{key} = {_toml(document[key])}" for key in ("full_last_link", "gravity") if key in document]
+    lines += [f"{key} = {toml_value(document[key])}" for key in ("full_last_link", "gravity") if key in document]
     for table in document["joint"]:
-        lines += ["", "[[joint]]", *(f"{key} = {_toml(value)}" for key, value in table.items())]
+        lines += ["", "[[joint]]", *(f"{key} = {toml_value(value)}" for key, value in table.items())]
     for name, table in document["probe"].items():
         theta0_rad, r_mm, h_mm = arm.probes[name].cylindrical
         lines += [
             "",
-            f"[probe.{_key(name)}]",
+            f"[probe.{toml_key(name)}]",
             f"# the same point: theta0 = {theta0_rad:.9g}, r = {r_mm:.9g}, h = {h_mm:.9g}",
-            *(f"{key} = {_toml(value)}" for key, value in table.items()),
+            *(f"{key} = {toml_value(value)}" for key, value in table.items()),
         ]
     return "\n".join(lines) + "\n"
 
@@ -208,18 +208,20 @@ def save_arm(arm: Arm, path: Path, force: bool = False) -> None:
     write_file(path, arm_toml(arm), force=force)
 
 
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _toml(name)
+def toml_key(name: str) -> str:
+    """A key as TOML writes it."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
-def _toml(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """A value as TOML writes it; numbers come back exactly as they were."""
     if isinstance(value, str):
         escaped = value.replace("\\", "\\\\").replace('"', '\\"')
         return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda match: f"\\u{ord(match[0]):04x}", escaped) + '"'
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_toml(inner)}" for key, inner in value.items()) + " }"
+        return "{ " + ", ".join(f"{toml_key(key)} = {toml_value(inner)}" for key, inner in value.items()) + " }"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list):
-        return "[" + ", ".join(_toml(inner) for inner in value) + "]"
+        return "[" + ", ".join(toml_value(inner) for inner in value) + "]"
     return repr(float(value)) if isinstance(value, float) else repr(int(value))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ulna.model import Arm, Joint, Probe
-from ulna.reproduce.virtual import VirtualArm
+from ulna.virtual.arm import ReadingErrors, VirtualArm
 
 _QUARTER = math.pi / 2
 
@@ -51,6 +51,9 @@ STRAIGHT_PROBE = (-1.8676, 0.0965, 238.5596)
 BAR_MM = 443.172
 RATED_MM = 0.037
 """The arm's rated length accuracy: ten fresh measurements of the bar stayed within ± this."""
+ENCODER_RAD = 5e-6
+SEAT_MM = 0.008
+"""Noise of the virtual experiments, standard deviations: of each encoder, and of a touch per coordinate."""
 
 
 def arm_of(name: str, links: Links, probe: Probe) -> Arm:
@@ -78,4 +81,4 @@ def virtual(arm: Arm) -> VirtualArm:
     limits = np.tile([-math.pi, math.pi], (arm.n, 1))
     for i in (1, 3, 5):
         limits[i] = arm.joints[i].theta0_rad + np.array([-0.3, 2.7])
-    return VirtualArm(arm, limits)
+    return VirtualArm(arm, limits, ReadingErrors(np.full(arm.n, ENCODER_RAD), SEAT_MM))

@@ -10,8 +10,17 @@ from numpy.typing import NDArray
 
 from ulna import _core
 from ulna.model import Arm, Probe
-from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, RATED_MM, STRAIGHT_PROBE, platinum, virtual
-from ulna.reproduce.virtual import ENCODER_RAD, SEAT_MM, as_drawn
+from ulna.reproduce.cheng2011.arms import (
+    BAR_MM,
+    BENT_PROBE,
+    ENCODER_RAD,
+    RATED_MM,
+    SEAT_MM,
+    STRAIGHT_PROBE,
+    platinum,
+    virtual,
+)
+from ulna.virtual.arm import as_drawn
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]

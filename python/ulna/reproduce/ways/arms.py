@@ -8,7 +8,7 @@ import numpy as np
 
 from ulna.model import Arm, Joint, Probe
 from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, STRAIGHT_PROBE, platinum, virtual
-from ulna.reproduce.virtual import VirtualArm
+from ulna.virtual.arm import ReadingErrors, VirtualArm
 
 BAR_ENDS_MM = np.array([[0.0, 0.0, 0.0], [BAR_MM, 0.0, 0.0]])
 
@@ -21,7 +21,8 @@ def true_arm(name: str, straight: bool = False) -> VirtualArm:
     seven = virtual(platinum(STRAIGHT_PROBE if straight else BENT_PROBE))
     if name == SEVEN:
         return replace(seven, arm=replace(seven.arm, name=SEVEN))
-    return VirtualArm(_locked(seven.arm), seven.travel_rad[:6])
+    errors = ReadingErrors(seven.errors.encoder_rad[:6], seven.errors.seat_mm)
+    return VirtualArm(_locked(seven.arm), seven.travel_rad[:6], errors)
 
 
 def _locked(seven: Arm) -> Arm:

@@ -8,13 +8,13 @@ import numpy as np
 
 from ulna.model import Arm, Probe
 from ulna.reproduce.claims import Claim
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX, true_arm
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import WRONG_MM, Trial, calibrate, start_of
 from ulna.reproduce.ways.wang2007 import ARMS_FRAME
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.virtual.arm import VirtualArm
 
 
 def _probe(truth: VirtualArm, seed: int) -> Trial:

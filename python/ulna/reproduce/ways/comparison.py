@@ -11,11 +11,11 @@ from rich.console import RenderableType
 
 from ulna.files.output import output_folder
 from ulna.reproduce.claims import FORMAT
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, shimojima2002, wang2007, wang2010
 from ulna.reproduce.ways.outcome import Outcome, Progress, Way, outcomes_of
 from ulna.reproduce.ways.trial import Trial, start_of
 from ulna.reproduce.ways.work import REPEATS, outcome_dicts, outcomes_table, write_json
+from ulna.virtual.arm import VirtualArm
 
 WORKS = (shimojima2002, santolaria2010, wang2007, gao2009, wang2010, cheng2010)
 

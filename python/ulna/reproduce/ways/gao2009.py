@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ulna.reproduce.claims import Claim
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, search_alone, start_of
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work, same_optimum
+from ulna.virtual.arm import VirtualArm
 
 
 def _known(truth: VirtualArm, seed: int) -> Trial:

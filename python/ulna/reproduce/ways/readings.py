@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
 from ulna.study import Artefact, Readings
+from ulna.virtual.arm import VirtualArm
 
 F64 = NDArray[np.float64]
 

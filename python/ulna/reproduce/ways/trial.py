@@ -15,9 +15,10 @@ import ulna
 from ulna.assembly import assemble
 from ulna.estimators import search_box
 from ulna.model import Arm
-from ulna.reproduce.virtual import ENCODER_RAD, SEAT_MM, VirtualArm, as_drawn
+from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
 from ulna.study import FitOptions, Noise, Readings, Study
+from ulna.virtual.arm import VirtualArm, as_drawn
 
 F64 = NDArray[np.float64]
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from ulna.reproduce.claims import Claim
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, start_of
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.virtual.arm import VirtualArm
 
 
 def _in_arms_frame(truth: VirtualArm, seed: int) -> Trial:

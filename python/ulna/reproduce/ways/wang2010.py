@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from ulna.reproduce.claims import Claim
-from ulna.reproduce.virtual import VirtualArm
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import SEVEN
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import Trial, calibrate, search_alone, start_of
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work, same_optimum
+from ulna.virtual.arm import VirtualArm
 
 
 def _by_lm(truth: VirtualArm, seed: int) -> Trial:
