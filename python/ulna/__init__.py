@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from ulna.batch import Batch, batch
     from ulna.calibrate import calibrate
     from ulna.cross_validate import CrossValidation, cross_validate
     from ulna.effects import Effects
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Arm",
     "Artefact",
+    "Batch",
     "CrossValidation",
     "Effects",
     "Evaluation",
@@ -46,6 +48,7 @@ __all__ = [
     "Study",
     "UlnaInputError",
     "__version__",
+    "batch",
     "calibrate",
     "cross_validate",
     "evaluate",
@@ -56,6 +59,7 @@ __all__ = [
 _WHERE = {
     "Arm": "model",
     "Artefact": "study",
+    "Batch": "batch",
     "CrossValidation": "cross_validate",
     "Effects": "effects",
     "Evaluation": "evaluate",
@@ -69,6 +73,7 @@ _WHERE = {
     "Result": "result",
     "Study": "study",
     "UlnaInputError": "errors",
+    "batch": "batch",
     "calibrate": "calibrate",
     "cross_validate": "cross_validate",
     "evaluate": "evaluate",

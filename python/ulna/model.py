@@ -142,6 +142,10 @@ class Arm:
         """Number of joints (encoders)."""
         return len(self.joints)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the compiled core, which is made again where it is needed: arms go to other processes."""
+        return {name: value for name, value in self.__dict__.items() if name != "core"}
+
     @cached_property
     def core(self) -> _core.Arm:
         """The same arm in the compiled core."""

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from ulna.cli.batch import batch
 from ulna.cli.calibrate import calibrate
 from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
@@ -53,6 +54,7 @@ app.command("identify")(identify)
 app.command("evaluate")(evaluate)
 app.command("measure")(measure)
 app.command("cross-validate")(cross_validate)
+app.command("batch")(batch)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
 app.add_typer(exporting, name="export")

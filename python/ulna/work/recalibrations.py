@@ -1,0 +1,107 @@
+"""Calibrations repeated on new noise, cut into pieces: what a study's uncertainties are worth."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.assembly import assemble
+from ulna.errors import UlnaInputError
+from ulna.files.arm import arm_toml
+from ulna.model import Arm
+from ulna.study import Study
+from ulna.work.ledger import Ledger
+from ulna.work.pieces import Threads, Workers
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+PIECE_RUNS = 500
+"""Calibrations in a piece: some tens of milliseconds, next to which handing it over costs little."""
+
+
+@dataclass(frozen=True)
+class Recalibrations:
+    """Parameters of calibrations on new noise each."""
+
+    names: list[str]
+    parameters: F64
+    """(runs, P), rad and mm."""
+    u: F64
+    """(runs, P) standard uncertainties that each stated; NaN where held or not determined."""
+    converged: NDArray[np.bool_]
+    """(runs,)"""
+
+
+def recalibrations(
+    study: Study,
+    truth: Arm,
+    runs: int,
+    seed: int = 0,
+    *,
+    workers: Workers | None = None,
+    ledger: Ledger | None = None,
+    progress: Progress | None = None,
+    piece_runs: int = PIECE_RUNS,
+) -> Recalibrations:
+    """Calibrate `runs` times on readings that are exact for `truth` plus newly drawn noise as the study states it.
+
+    Run k draws from (seed, k), so the numbers depend neither on the workers nor on how the work is cut. With a ledger,
+    pieces finished earlier are not done again. Raises UlnaInputError without stated noise; KeyboardInterrupt.
+    """
+    if study.noise is None:
+        raise UlnaInputError(
+            f"{study.label}: calibrations are repeated on noise drawn anew, but no noise is stated; expected [noise]. "
+            "State it."
+        )
+    pieces = [(first, min(piece_runs, runs - first)) for first in range(0, runs, piece_runs)]
+    found: dict[int, dict[str, NDArray[Any]]] = {}
+    if ledger is not None:
+        kept = ((number, ledger.kept(number)) for number in range(len(pieces)))
+        found = {number: arrays for number, arrays in kept if arrays is not None}
+    missing = [number for number in range(len(pieces)) if number not in found]
+    told = progress if progress is not None else lambda *_: None
+    told("calibrations", sum(pieces[number][1] for number in found), runs)
+    work = partial(_recalibrated, study, truth, seed)
+    for number, arrays in (workers or Threads()).each(work, [pieces[number] for number in missing]):
+        found[missing[number]] = arrays
+        if ledger is not None:
+            ledger.keep(missing[number], arrays)
+        told("calibrations", sum(pieces[number][1] for number in found), runs)
+    in_order = [found[number] for number in range(len(pieces))]
+    parameters, u, converged = (
+        np.concatenate([arrays[name] for arrays in in_order]) for name in ("parameters", "u", "converged")
+    )
+    return Recalibrations(assemble(study).names, parameters, u, converged)
+
+
+def job_of(study: Study, truth: Arm, runs: int, seed: int, piece_runs: int = PIECE_RUNS) -> dict[str, Any]:
+    """What a ledger must know of such a job: everything that its numbers depend on."""
+    digest = hashlib.sha256()
+    for arm in (study.arm, truth):
+        digest.update(arm_toml(arm).encode())
+    digest.update(repr((study.noise, study.fit)).encode())
+    for group in study.readings:
+        digest.update(repr((group.artefact, group.placement.tolist())).encode())
+        for values in (group.q_rad, group.p_rad, group.length_mm, group.probe, group.feature, group.temperature_c):
+            digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
+    content = {"runs": runs, "seed": seed, "piece_runs": piece_runs, "study_sha256": digest.hexdigest()}
+    return {"job": "recalibrations", **content}
+
+
+def _recalibrated(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> dict[str, NDArray[Any]]:
+    """One piece: runs (first, count)."""
+    from ulna import _core
+
+    first, count = piece
+    assembled = assemble(study)
+    parameters, u, converged = _core.recalibrate(
+        assembled.problem, assembled.hold, truth.core, count, seed=seed, threads=1, first=first
+    )
+    return {"parameters": parameters, "u": u, "converged": converged}
