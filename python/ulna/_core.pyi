@@ -324,6 +324,18 @@ def recalibrate(
     first: int = 0,
 ) -> tuple[F64, F64, Bool]:
     """Calibrations repeated on new noise: readings are taken as exact for `truth`, the problem's stated noise is drawn
-    anew for each run (which starts from the problem's arm). Returns parameters (runs, P), standard uncertainties
+    anew for each run (each fit starts at the truth). Returns parameters (runs, P), standard uncertainties
     (runs, P; NaN where held, not determined, or not asked for), converged (runs,). Run k of all draws from (seed, k);
     `first`: the k of the first run, where the work is cut."""
+
+def choose(
+    candidates: F64,  # (N, k, r) k whitened rows each, in coordinates where the mean information is about one
+    count: int,
+    criterion: str,  # "volume" (log det C), "mean" or "worst" (variance over directions), "widest" (of F C Fᵀ)
+    directions: F64 | None = None,  # (m, r) rows F that the last three ask for
+    fixed: F64 | None = None,  # (r, r) information at hand already
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> tuple[list[int], list[float], int]:
+    """`count` of the candidates with a small criterion of C = M⁻¹, by exchange from a random set: their numbers, the
+    criterion after each round, and how many exchanges there were. Raises UlnaError where too few are to be chosen."""

@@ -11,6 +11,7 @@
 //! | [`problem`], [`assembly`] | an arm and readings, and the free parameters as unknowns | `residuals`, `solver` |
 //! | [`solver`] | least squares from streamed rows; knows no kinematics | `simd` |
 //! | [`decomposition`], [`covariance`] | singular values and what follows from them; know no kinematics | `solver` |
+//! | [`design`] | which measurements to take, chosen by exchange; knows no kinematics | `monitor` |
 //! | [`identifiability`], [`causes`] | what is lost, in parameters and words | `decomposition` |
 //! | [`pins`], [`families`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
 //! | [`symmetry`] | twins: parameter sets that describe the same readings | `arm` |
@@ -63,6 +64,7 @@ pub mod calibrate;
 pub mod causes;
 pub mod covariance;
 pub mod decomposition;
+pub mod design;
 pub mod error;
 pub mod families;
 pub mod identifiability;

@@ -9,15 +9,18 @@ pub enum Stage {
     Search,
     /// Repeated calibrations.
     MonteCarlo,
+    /// Rounds of an exchange.
+    Plan,
 }
 
 impl Stage {
-    /// `"fit"`, `"search"` or `"monte carlo"`.
+    /// `"fit"`, `"search"`, `"monte carlo"` or `"plan"`.
     pub fn as_str(self) -> &'static str {
         match self {
             Stage::Fit => "fit",
             Stage::Search => "search",
             Stage::MonteCarlo => "monte carlo",
+            Stage::Plan => "plan",
         }
     }
 }

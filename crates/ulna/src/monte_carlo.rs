@@ -2,7 +2,7 @@
 
 use crate::arm::Arm;
 use crate::assembly::Assembly;
-use crate::calibrate::{Options, fit, judge};
+use crate::calibrate::{Options, fit_from, judge};
 use crate::covariance::covariance;
 use crate::error::{Error, Result};
 use crate::families::pins;
@@ -46,7 +46,9 @@ pub struct Repeat<'a> {
     pub uncertainties: bool,
 }
 
-/// Calibrates `runs` times, from the problem's own arm, on readings that are exact for `truth` plus newly drawn noise.
+/// Calibrates `runs` times on readings that are exact for `truth` plus newly drawn noise. Each fit starts at the truth:
+/// what is asked is where calibrations end, not whether they find the way. What the readings do not determine stays as
+/// the problem's own arm has it.
 ///
 /// # Errors
 /// No stated noise, or interrupted.
@@ -68,8 +70,8 @@ pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: 
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(repeat.seed, run as u64));
         let mut drawn = problem.redrawn(truth, noise, &mut rng);
         let run = match drawn.loss() {
-            None => recalibrated(&mut drawn, free, pins, repeat.uncertainties)?,
-            Some(_) => refitted(&mut drawn, free)?,
+            None => recalibrated(&mut drawn, free, pins, truth, repeat.uncertainties)?,
+            Some(_) => refitted(&mut drawn, free, truth)?,
         };
         if !monitor.progress(Stage::MonteCarlo, done.fetch_add(1, Ordering::Relaxed), repeat.runs) {
             stopped.store(true, Ordering::Relaxed);
@@ -112,8 +114,10 @@ fn truth_of(problem: &Problem, truth: &Arm) -> Result<Vec<f64>> {
 }
 
 /// One calibration by squares: the weights settle in one round.
-fn recalibrated(drawn: &mut Problem, free: &[usize], pins: &[Pin], uncertain: bool) -> Result<Run> {
-    let (mut parameters, mut report) = descend(drawn, free, pins, &drawn.parameters())?;
+fn recalibrated(drawn: &mut Problem, free: &[usize], pins: &[Pin], truth: &[f64], uncertain: bool) -> Result<Run> {
+    let mut from = drawn.parameters();
+    free.iter().for_each(|&j| from[j] = truth[j]);
+    let (mut parameters, mut report) = descend(drawn, free, pins, &from)?;
     if drawn.weighs_directions() {
         drawn.weigh(&parameters, Weighing::Full);
         (parameters, report) = descend(drawn, free, pins, &parameters)?;
@@ -123,8 +127,8 @@ fn recalibrated(drawn: &mut Problem, free: &[usize], pins: &[Pin], uncertain: bo
 }
 
 /// One calibration with a loss: the whole fit, as a study has it.
-fn refitted(drawn: &mut Problem, free: &[usize]) -> Result<Run> {
-    let fitted = fit(drawn, free, &Options { search_starts: 0, ..Options::default() }, &Unwatched)?;
+fn refitted(drawn: &mut Problem, free: &[usize], truth: &[f64]) -> Result<Run> {
+    let fitted = fit_from(drawn, free, Some(truth), &Options { search_starts: 0, ..Options::default() }, &Unwatched)?;
     let mut u = vec![f64::NAN; fitted.start.len()];
     for (unknown, &j) in free.iter().enumerate() {
         if !fitted.identifiability.in_lost[unknown] {
