@@ -207,3 +207,25 @@ def test_no_rows(tmp_path: Path) -> None:
 def test_unknown_units(tmp_path: Path, key: str, value: str) -> None:
     with pytest.raises(UlnaInputError, match=f"'{value}'; expected"):
         ulna.measure(arm(), write(tmp_path / "r.csv", angles(2)), **{key: value})  # type: ignore[arg-type]
+
+
+def test_the_whole_covariance_of_each_point(tmp_path: Path) -> None:
+    """J C Jᵀ by NumPy, from the arm's own Jacobian; in inches as the squares of inches."""
+    known = arm()
+    count = len(known.parameter_names)
+    root = np.random.default_rng(4).standard_normal((count, count)) * 1e-3
+    known = dataclasses.replace(known, uncertainty=ParameterCovariance(list(known.parameter_names), root @ root.T, []))
+    q = angles(40, 2)
+    path = write(tmp_path / "r.csv", q)
+    by_parameter = known.jacobian(q)
+    expected = by_parameter @ (root @ root.T) @ by_parameter.transpose(0, 2, 1)
+    for unit, mm in (("mm", 1.0), ("in", 25.4)):
+        table = ulna.measure(known, path, covariance=True, units=unit).table  # type: ignore[arg-type]
+        assert table is not None
+        assert table.columns == ["x", "y", "z", "u_x", "u_y", "u_z", "c_xy", "c_xz", "c_yz"]
+        beside = np.stack([expected[:, 0, 1], expected[:, 0, 2], expected[:, 1, 2]], axis=1)
+        np.testing.assert_allclose(table.select("c_xy", "c_xz", "c_yz").to_numpy(), beside / mm**2, rtol=1e-9)
+        u = np.sqrt(np.diagonal(expected, axis1=1, axis2=2)) / mm
+        np.testing.assert_allclose(table.select("u_x", "u_y", "u_z").to_numpy(), u, rtol=1e-9)
+    with pytest.raises(UlnaInputError, match=r"no uncertainty is known of this arm"):
+        ulna.measure(arm(), path, covariance=True)

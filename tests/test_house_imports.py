@@ -15,7 +15,7 @@ PYTHON_LAYERS = [
     {"model"},
     {"frames"},
     {"study"},
-    {"parameters", "options", "simulation"},
+    {"parameters", "options", "simulation", "plan_spec"},
     {"files"},
     {
         "assembly",
@@ -44,6 +44,8 @@ PYTHON_LAYERS = [
         "simulate",
         "work",
         "batch",
+        "uncertainty",
+        "planning",
         "reproduce",
     },
     {"report"},

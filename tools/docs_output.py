@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "cross-validate.txt": (["cross-validate", "examples/platinum/study.toml", "--by", "5"], None),
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
+    "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the

@@ -79,7 +79,8 @@ def generate() -> dict[str, pl.DataFrame]:
     rng = np.random.default_rng(20110541)
     return {
         "bars.csv": bars(101, "bent", rng),
-        "check-bars.csv": bars(10, "bent", rng),
+        "check-bars.csv": (check := bars(10, "bent", rng)),
+        "length.csv": check.head(2),
         "seat.csv": seat(32, "straight", rng),
         "check-straight.csv": bars(10, "straight", rng),
     }

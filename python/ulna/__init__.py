@@ -27,12 +27,19 @@ if TYPE_CHECKING:
     from ulna.identify import identify
     from ulna.measure import measure
     from ulna.model import Arm, Joint, Probe
+    from ulna.plan_spec import PlanSpec
+    from ulna.planning.plan import Plan, plan
     from ulna.result import Result
+    from ulna.simulate import Simulated, simulate
+    from ulna.simulation import Simulation
     from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
+    from ulna.uncertainty.asking import uncertainty
+    from ulna.uncertainty.assess import Assessment
 
 __all__ = [
     "Arm",
     "Artefact",
+    "Assessment",
     "Batch",
     "CrossValidation",
     "Effects",
@@ -41,10 +48,14 @@ __all__ = [
     "InputWarning",
     "Joint",
     "Noise",
+    "Plan",
+    "PlanSpec",
     "Prior",
     "Probe",
     "Readings",
     "Result",
+    "Simulated",
+    "Simulation",
     "Study",
     "UlnaInputError",
     "__version__",
@@ -54,11 +65,15 @@ __all__ = [
     "evaluate",
     "identify",
     "measure",
+    "plan",
+    "simulate",
+    "uncertainty",
 ]
 
 _WHERE = {
     "Arm": "model",
     "Artefact": "study",
+    "Assessment": "uncertainty.assess",
     "Batch": "batch",
     "CrossValidation": "cross_validate",
     "Effects": "effects",
@@ -67,10 +82,14 @@ _WHERE = {
     "InputWarning": "errors",
     "Joint": "model",
     "Noise": "study",
+    "Plan": "planning.plan",
+    "PlanSpec": "plan_spec",
     "Prior": "study",
     "Probe": "model",
     "Readings": "study",
     "Result": "result",
+    "Simulated": "simulate",
+    "Simulation": "simulation",
     "Study": "study",
     "UlnaInputError": "errors",
     "batch": "batch",
@@ -79,6 +98,9 @@ _WHERE = {
     "evaluate": "evaluate",
     "identify": "identify",
     "measure": "measure",
+    "plan": "planning.plan",
+    "simulate": "simulate",
+    "uncertainty": "uncertainty.asking",
 }
 
 

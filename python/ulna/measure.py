@@ -29,7 +29,7 @@ class Measurement:
     rows: int
     columns: list[str]
     """`id` and `probe` where the readings have them; `x, y, z`; `u_x, u_y, u_z` (standard uncertainties) where the
-    arm came from a result."""
+    arm came from a result; `c_xy, c_xz, c_yz` (covariances) where they were asked for."""
     unit: str
     """Of the coordinates and their uncertainties."""
     path: Path | None = None
@@ -65,6 +65,7 @@ def measure(
     dataset: str | None = None,
     columns: Mapping[str, str] | None = None,
     temperature_c: float | None = None,
+    covariance: bool = False,
     force: bool = False,
     progress: Progress | None = None,
 ) -> Measurement:
@@ -76,13 +77,15 @@ def measure(
     `separator`, `decimal`, `header`, `sheet`, `dataset`, `columns`: how the file is written, as in a study's
     ``[[readings]]``.
     `temperature_c`: of all readings, °C, where the arm's links grow with it and the file has no column ``temperature``.
+    `covariance`: with a result, also the columns ``c_xy, c_xz, c_yz``, what is beside the diagonal of each point's
+    covariance matrix, in the square of the unit; the diagonal is u².
     `out`: a CSV or Parquet file (by its ending), written whole or not at all; None: the table is returned in memory.
     Raises UlnaInputError naming the first bad cell; KeyboardInterrupt leaves nothing behind.
     """
     layout = Layout.of_options(
         columns, separator=separator, decimal=decimal, header=header, sheet=sheet, dataset=dataset
     )
-    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout, temperature_c)
+    job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout, temperature_c, covariance)
     table = path = None
     if out is None:
         table = pl.concat(list(job.frames(progress)))
@@ -106,12 +109,15 @@ def measure_to_stream(
     units: Literal["mm", "m", "in"] = "mm",
     layout: Layout = AS_EXPECTED,
     temperature_c: float | None = None,
+    covariance: bool = False,
 ) -> Measurement:
     """The same, written as CSV (or one JSON object a line) to an open file, such as stdout.
 
     What went out cannot be taken back, so all readings are checked before the first point is written.
     """
-    job = MeasureJob(arm, Path(readings), probe, angle, units, layout=layout, temperature_c=temperature_c)
+    job = MeasureJob(
+        arm, Path(readings), probe, angle, units, layout=layout, temperature_c=temperature_c, covariance=covariance
+    )
     job.check()
     for number, frame in enumerate(job.frames()):
         # as text, so that a reader who has gone away is noticed as Python notices it

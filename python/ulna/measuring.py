@@ -24,7 +24,7 @@ from ulna.files.table import count_rows, read_header, stream
 from ulna.files.toml import check_format, read_json
 from ulna.files.units import MM_PER
 from ulna.model import Arm
-from ulna.tip_uncertainty import TipUncertainty
+from ulna.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -45,6 +45,7 @@ class MeasureJob:
         encoder_u_rad: F64 | None = None,
         layout: Layout = AS_EXPECTED,
         temperature_c: float | None = None,
+        covariance: bool = False,
     ) -> None:
         """Raises UlnaInputError for whatever is wrong before the first row."""
         if isinstance(arm, Arm):
@@ -69,9 +70,15 @@ class MeasureJob:
             remarks.append(f"{self.header.path}: two poses a row: only those of q1 … q{self.arm.n} are measured.")
         for remark in remarks:
             warnings.warn(remark, InputWarning, stacklevel=2)
+        self._covariance = covariance
         self._uncertainty: TipUncertainty | None = None
         if self.arm.uncertainty is not None:
             self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
+        elif covariance:
+            raise UlnaInputError(
+                f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
+                "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
+            )
         self._outside: dict[int, list[int]] = {}
         self._outside_count: dict[int, int] = {}
         self.rows = 0
@@ -80,7 +87,8 @@ class MeasureJob:
     def columns(self) -> list[str]:
         """Of the output."""
         u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
-        return [*self._texts, "x", "y", "z", *u]
+        beside = ["c_xy", "c_xz", "c_yz"] if self._covariance else []
+        return [*self._texts, "x", "y", "z", *u, *beside]
 
     def check(self) -> None:
         """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
@@ -116,15 +124,17 @@ class MeasureJob:
         probe = self._probes(piece)
         warmth_k = self._warmth_k(piece)
         p_mm = self.arm.core.tip(q_rad, probe, warmth_k)
-        values = [p_mm]
+        values = [p_mm / MM_PER[self.unit]]
         if self._uncertainty is not None:
-            u_mm = np.empty_like(p_mm)
+            c_mm2 = np.empty((len(p_mm), 6))
             for k in np.unique(probe):
                 rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
                 warmth = None if warmth_k is None else np.ascontiguousarray(warmth_k[rows])
-                u_mm[rows] = self._uncertainty.of(np.ascontiguousarray(q_rad[rows]), int(k), warmth)
-            values.append(u_mm)
-        numbers = np.concatenate(values, axis=1) / MM_PER[self.unit]
+                c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), warmth)
+            values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
+            if self._covariance:
+                values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
+        numbers = np.concatenate(values, axis=1)
         columns = dict(piece.texts)
         for k, name in enumerate(self.columns[len(self._texts) :]):
             columns[name] = pl.Series(name, np.ascontiguousarray(numbers[:, k]), nan_to_null=True)

@@ -18,6 +18,9 @@ from ulna.model import Arm
 
 F64 = NDArray[np.float64]
 
+DIAGONAL, BESIDE = [0, 3, 5], [1, 2, 4]
+"""Of xx, xy, xz, yy, yz, zz."""
+
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
@@ -48,27 +51,33 @@ class TipUncertainty:
         self._pool = ThreadPoolExecutor(available_cores())
 
     def of(self, q_rad: F64, probe: int, warmth_k: F64 | None = None) -> F64:
-        """(N, n) → (N, 3) mm; NaN where the tip depends on what was not determined. warmth_k: as `Arm.warmth_k`."""
+        """(N, n) → (N, 3) standard uncertainties, mm; NaN as for `covariance`."""
+        u_mm: F64 = np.sqrt(np.maximum(self.covariance(q_rad, probe, warmth_k)[:, DIAGONAL], 0.0))
+        return u_mm
+
+    def covariance(self, q_rad: F64, probe: int, warmth_k: F64 | None = None) -> F64:
+        """(N, n) → (N, 6) mm²: xx, xy, xz, yy, yz, zz of the tip's covariance matrix.
+
+        NaN where the tip depends on what was not determined. warmth_k: as `Arm.warmth_k`.
+        """
         if not self._estimated:
-            return np.full((len(q_rad), 3), np.nan)
+            return np.full((len(q_rad), 6), np.nan)
 
         def block(start: int) -> F64:
             rows = slice(start, start + _BLOCK_ROWS)
             return self._block(q_rad[rows], probe, None if warmth_k is None else warmth_k[rows])
 
-        u_mm = np.concatenate([np.empty((0, 3)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
+        found = np.concatenate([np.empty((0, 6)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
         if self._lost:
             moved = self._effect_mm(q_rad, probe, warmth_k, self._directions) > MOVES_MM
             if moved.any():
-                u_mm[moved] = np.nan
+                found[moved] = np.nan
                 self._tell_which(q_rad[moved], probe, None if warmth_k is None else warmth_k[moved])
-        return u_mm
+        return found
 
     def _block(self, q_rad: F64, probe: int, warmth_k: F64 | None) -> F64:
         parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
-        covariance = self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], warmth_k)
-        u_mm: F64 = np.sqrt(np.maximum(covariance[:, [0, 3, 5]], 0.0))
-        return u_mm
+        return self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], warmth_k)
 
     def _effect_mm(self, q_rad: F64, probe: int, warmth_k: F64 | None, directions: F64) -> F64:
         return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, warmth_k)

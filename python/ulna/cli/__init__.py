@@ -15,7 +15,10 @@ from ulna.cli.identify import identify
 from ulna.cli.importing import app as importing
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
 from ulna.cli.measure import measure
+from ulna.cli.plan import plan
 from ulna.cli.reproduce import reproduce
+from ulna.cli.simulate import simulate
+from ulna.cli.uncertainty import uncertainty
 
 app = typer.Typer(
     name="ulna",
@@ -53,8 +56,11 @@ app.command("calibrate")(calibrate)
 app.command("identify")(identify)
 app.command("evaluate")(evaluate)
 app.command("measure")(measure)
+app.command("uncertainty")(uncertainty)
 app.command("cross-validate")(cross_validate)
 app.command("batch")(batch)
+app.command("simulate")(simulate)
+app.command("plan")(plan)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
 app.add_typer(exporting, name="export")

@@ -32,6 +32,9 @@ def measure(
         float | None,
         typer.Option("--temperature", metavar="C", help="Of all readings, °C, where they do not say it."),
     ] = None,
+    covariance: Annotated[
+        bool, typer.Option("--covariance", help="Also c_xy, c_xz, c_yz, beside the diagonal of the covariance.")
+    ] = False,
     separator: Annotated[
         str | None, typer.Option("--separator", metavar="SIGN", help='CSV: between columns; or "tab".')
     ] = None,
@@ -67,7 +70,7 @@ def measure(
     from ulna.measure import measure as measure_to_file
     from ulna.measure import measure_to_stream
 
-    choices: Any = {"angle": angle, "units": units, "temperature_c": temperature}
+    choices: Any = {"angle": angle, "units": units, "temperature_c": temperature, "covariance": covariance}
     table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}
     layout = Layout.of_options(column, dataset=dataset, **table)
     if out is None:

@@ -49,6 +49,18 @@ def noise_of_result(document: dict[str, Any], arm: Arm, path: Path) -> F64 | Non
     return np.array(each, dtype=np.float64)
 
 
+def seat_of_result(document: dict[str, Any], path: Path) -> float | None:
+    """The standard deviation of a touch, mm per coordinate, where the study stated it. Raises UlnaInputError."""
+    provenance = document.get("provenance")
+    noise = provenance.get("noise") if isinstance(provenance, dict) else None
+    stated = noise.get("seat_mm") if isinstance(noise, dict) else None
+    if stated is None:
+        return None
+    if not (_number(stated) and stated > 0):
+        _damaged(path, "provenance.noise.seat_mm", "expected a positive number")
+    return float(stated)
+
+
 def _matrix(rows: Any, names: list[str], path: Path) -> F64:
     size = len(names)
     if not (isinstance(rows, list) and all(isinstance(row, list) and len(row) == size for row in rows)) or (

@@ -108,7 +108,7 @@ def _part(
     feature: I64 | None = None
     if has_own_points(artefact):
         artefact, feature = own_points(frame, row, artefact, header, source, units, remarks)
-    factors = _angle_factors(source, arm, units)
+    factors = angle_factors(source, arm, units)
     q_rad = angles(frame, "q", factors)
     check_scale(q_rad, "q", factors, source.entry.angle or units.angle, header, row)
     p_rad = length_mm = None
@@ -141,7 +141,7 @@ def angles(frame: pl.DataFrame, letter: str, factors: F64) -> F64:
     return out
 
 
-def _angle_factors(source: Source, arm: Arm, units: Units) -> F64:
+def angle_factors(source: Source, arm: Arm, units: Units) -> F64:
     """(n,) rad in one unit of the file."""
     unit = source.entry.angle or units.angle
     if unit != "counts":

@@ -13,12 +13,18 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ulna.files.arm import ArmFile
+from ulna.files.plan import PlanFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
+from ulna.files.simulation_tables import SimulationFile
 from ulna.files.study import StudyFile
+from ulna.files.task import TaskFile
 
 MODELS: dict[str, type[BaseModel]] = {
     "ulna-arm-1": ArmFile,
     "ulna-study-1": StudyFile,
+    "ulna-simulation-1": SimulationFile,
+    "ulna-plan-1": PlanFile,
+    "ulna-task-1": TaskFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

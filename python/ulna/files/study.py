@@ -132,7 +132,7 @@ def load_study(path: Path, rows: Rows = "fit") -> Study:
     arm_path = path.parent / file.arm
     arm, arm_digest = load_arm_and_hash(arm_path)
     fit = _fit(file.fit, file.units)
-    noise = _noise(file.noise, file.units, arm, path)
+    noise = noise_of_table(file.noise, file.units, arm, path)
     remarks: list[str] = []
     files = [InputFile(path, digest, 0), InputFile(arm_path, arm_digest, 0)]
     artefacts: dict[str, Artefact] = {}
@@ -205,7 +205,8 @@ def _readings(
     return groups
 
 
-def _noise(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Noise | None:
+def noise_of_table(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Noise | None:
+    """What a file states of noise, in rad and mm. Raises UlnaInputError."""
     if table is None or (table.encoder is None and table.seat is None):
         return None
     encoder_rad = None

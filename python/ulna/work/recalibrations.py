@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -68,7 +68,7 @@ def recalibrations(
     missing = [number for number in range(len(pieces)) if number not in found]
     told = progress if progress is not None else lambda *_: None
     told("calibrations", sum(pieces[number][1] for number in found), runs)
-    work = partial(_recalibrated, study, truth, seed)
+    work = partial(_piece, study, truth, seed)
     for number, arrays in (workers or Threads()).each(work, [pieces[number] for number in missing]):
         found[missing[number]] = arrays
         if ledger is not None:
@@ -95,12 +95,19 @@ def job_of(study: Study, truth: Arm, runs: int, seed: int, piece_runs: int = PIE
     return {"job": "recalibrations", **content}
 
 
-def _recalibrated(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> dict[str, NDArray[Any]]:
+def recalibrated(
+    study: Study, truth: Arm, seed: int, pieces: Sequence[tuple[int, int]], workers: Workers
+) -> dict[int, dict[str, NDArray[Any]]]:
+    """Number of the piece → parameters, u and converged of its runs (first, count)."""
+    return dict(workers.each(partial(_piece, study, truth, seed), pieces))
+
+
+def _piece(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> dict[str, NDArray[Any]]:
     """One piece: runs (first, count)."""
     from ulna import _core
 
     first, count = piece
-    assembled = assemble(study)
+    assembled = assemble(study.with_arm(study.arm.with_signs(truth.signs)))
     parameters, u, converged = _core.recalibrate(
         assembled.problem, assembled.hold, truth.core, count, seed=seed, threads=1, first=first
     )

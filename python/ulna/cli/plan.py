@@ -1,0 +1,54 @@
+"""`ulna plan`: where to put the artefact and which poses to take."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ulna.cli.options import ArmFile, Force, Json, OutFolder
+from ulna.cli.running import guard
+
+
+@guard
+def plan(
+    arm: ArmFile,
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The plan file (TOML).", show_default=False)],
+    out: OutFolder = None,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Choose where to put the artefact and which poses to take, before anything is measured.
+
+    Prints what is expected of the calibrated arm beside random choice and beside 101 random measurements, what a
+    simulation of it gains, and the observability indices O1 to O5. With -o it writes plan.csv (the list to follow),
+    plan.json and pictures. Readings taken already are completed where the file names their study.
+
+    Example: [bold]ulna plan arm.toml plan.toml -o planned[/bold]
+    """
+    import ulna
+    from ulna.cli import output
+    from ulna.files.output import check_output, refuse_inputs
+    from ulna.files.plan import load_plan_spec
+    from ulna.planning.written import FILES
+    from ulna.report.plan import plan_report
+
+    if out is not None:
+        check_output(out, FILES, force)  # before the long work
+    nominal = ulna.Arm.load(arm)
+    asked = load_plan_spec(spec, nominal)
+    if out is not None:
+        refuse_inputs((out / name for name in FILES), [arm, *asked.files])
+    with output.progress_bar() as progress:
+        found = ulna.plan(nominal, asked, progress)
+    if out is not None:
+        found.save(out, force)
+    if as_json:
+        output.print_json(found.as_dict())
+    else:
+        output.print_renderable(*plan_report(found))
+    if out is not None:
+        output.say(f"Written to {out}: {', '.join(FILES)}")
+    elif not as_json:
+        output.say("Nothing was written: give -o DIR to keep the plan.")

@@ -1,0 +1,77 @@
+"""What can be planned, and what cannot: each refusal says why and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError
+from ulna.model import Arm
+from ulna.parameters import hold_mask
+from ulna.plan_spec import PlanSpec
+from ulna.study import FitOptions, Study
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+
+def free_parameters(arm: Arm, spec: PlanSpec) -> I64:
+    """Indices of the parameters that will be fitted. Raises UlnaInputError for a vain pattern."""
+    path = Path(spec.label) if spec.files else None
+    study = Study(path, arm, [], fit=FitOptions(hold=list(spec.hold)))
+    free = np.flatnonzero(~hold_mask(study, arm.parameter_names))
+    if not len(free):
+        raise UlnaInputError(f"{spec.label}: every parameter is held; expected some to plan for. Hold fewer.")
+    return free
+
+
+def travel(arm: Arm, spec: PlanSpec) -> F64:
+    """(n, 2) how far the joints turn: as the spec says, else the arm's limits. Raises UlnaInputError without either."""
+    if spec.travel_rad is not None:
+        return np.array(spec.travel_rad, dtype=np.float64)
+    for k, joint in enumerate(arm.joints, start=1):
+        if joint.limits_rad is None:
+            raise UlnaInputError(
+                f"{spec.label}: joint {k} of arm '{arm.name}' has no limits; expected how far each joint turns, for a "
+                "posture that the arm cannot take is no plan. Add limits to the arm file, or travel to the plan."
+            )
+    return np.array([joint.limits_rad for joint in arm.joints], dtype=np.float64)
+
+
+def check(arm: Arm, spec: PlanSpec) -> None:
+    """Raises UlnaInputError for what no plan can be made of."""
+    kind = spec.artefact.kind
+    if kind not in ("bar", "seat", "points"):
+        raise UlnaInputError(
+            f"{spec.label}: artefact '{spec.artefact.name}' is a {kind}; plans are made for bar, seat and points. "
+            "State one of them."
+        )
+    if len(spec.artefact.features) * spec.touches < 2 and spec.artefact.frame == "free":
+        raise UlnaInputError(
+            f"{spec.label}: one touch of one feature tells nothing, for its place is unknown; expected touches of 2 or "
+            "more. Raise touches."
+        )
+    if "link-expansion" in arm.extras:
+        raise UlnaInputError(
+            f"{spec.label}: the links of arm '{arm.name}' grow with temperature, which plans do not cover. Remove "
+            "expansion from the arm file."
+        )
+    if spec.choose > spec.candidates:
+        raise UlnaInputError(
+            f"{spec.label}: {spec.choose} measurements to choose of {spec.candidates} candidates; expected more "
+            "candidates. Raise candidates."
+        )
+    if spec.taken is not None:
+        if spec.taken.arm.parameter_names != arm.parameter_names:
+            raise UlnaInputError(
+                f"{spec.label}: the study of the readings taken is of arm '{spec.taken.arm.name}', with other "
+                f"parameters than '{arm.name}'; expected the same joints and probes. Name another study."
+            )
+        for group in spec.taken.readings:
+            if group.artefact.kind in ("sphere", "plane"):
+                raise UlnaInputError(
+                    f"{spec.label}: readings taken of artefact '{group.artefact.name}' are of a {group.artefact.kind}; "
+                    "expected bar, seat, points or length. Leave them out of the study."
+                )

@@ -1,0 +1,239 @@
+"""Plan: from an arm and a spec to the measurements that tell most, in an order that an operator can follow."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError
+from ulna.model import Arm
+from ulna.plan_spec import PlanSpec
+from ulna.planning.asking import check, free_parameters, travel
+from ulna.planning.candidates import EACH, Candidates, combine, draw
+from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
+from ulna.planning.judged import Tests
+from ulna.planning.order import in_order
+from ulna.planning.scene import Figures, Scene
+from ulna.planning.trial import Trial, carry_out
+from ulna.virtual.postures import Mover
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+Progress = Callable[[str, int, int], None]
+
+PAPER = 101
+"""Bars of Cheng, Yu and Fei (2011), with which a plan is compared."""
+CURVE_OF = 3000
+"""Candidates that the curve over the number chosen is made with."""
+TRIAL_SETS = 5
+"""Random sets that a trial's calibrations on random measurements take turns with."""
+PLACED = 8
+"""Measurements that stand for a place where places are chosen first."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Measurements to take, in their order."""
+
+    arm: Arm
+    spec: PlanSpec
+    chosen: Candidates
+    """In order of work."""
+    planned: Figures
+    random: Figures
+    """The mean of random sets of the same size."""
+    paper: Figures | None
+    """The mean of 101 random measurements; None where they do not determine what is free."""
+    observability: dict[str, float]
+    """O1 to O5."""
+    random_observability: dict[str, float]
+    curve: list[tuple[int, float, float]]
+    """Number, then the root mean square length uncertainty (mm) of the best choice of so many and of random ones."""
+    trial: Trial | None
+    """The same by simulation; None where none was asked for, or where readings were taken already."""
+    determined: int
+    """Directions of the parameters that the candidates determine, of `free`."""
+    free: int
+    candidates: int
+    seconds: dict[str, float]
+    """Of drawing candidates, of their rows, and of choosing."""
+
+    @property
+    def q_rad(self) -> F64:
+        """(choose, K, touches, n) encoder angles."""
+        return self.chosen.poses(np.arange(len(self.chosen)))
+
+    @property
+    def gain(self) -> float:
+        """By which part the expected length uncertainty is smaller than that of random measurements."""
+        return 1.0 - self.planned.u_length_mm / self.random.u_length_mm
+
+    def save(self, folder: str | Path, force: bool = False) -> None:
+        """Write plan.csv, plan.json and the pictures. Raises UlnaInputError."""
+        from ulna.planning.written import save
+
+        save(self, Path(folder), force)
+
+    def as_dict(self) -> dict[str, Any]:
+        """`plan.json`: JSON types only."""
+        from ulna.planning.written import as_dict
+
+        return as_dict(self)
+
+
+def plan(arm: Arm, spec: PlanSpec, progress: Progress | None = None) -> Plan:
+    """Choose measurements that make the spec's criterion small, and judge them beside random ones.
+
+    `progress` is called with (stage, done, total). Raises UlnaInputError for what cannot be asked; KeyboardInterrupt.
+    """
+    check(arm, spec)
+    told = progress if progress is not None else lambda *_: None
+    rng = np.random.default_rng([spec.seed, 41])
+    probe = arm.probe_index(spec.probe)
+    mover = Mover(arm, travel(arm, spec))
+    free = free_parameters(arm, spec)
+    began = time.perf_counter()
+    told("candidates", 0, 3)
+    candidates = draw(spec, mover, probe, rng)
+    drawn = time.perf_counter()
+    told("candidates", 1, 3)
+    scene = _scene(arm, spec, mover, probe, free, candidates, rng)
+    told("candidates", 3, 3)
+    directions = scene.directions(rng)
+    if spec.placements is not None and spec.placements < spec.choose and spec.artefact.frame == "free":
+        candidates, scene = _few_places(arm, spec, probe, free, candidates, scene, directions, rng, told)
+    rowed = time.perf_counter()
+    chosen = scene.choose(spec.choose, directions, progress)
+    finished = time.perf_counter()
+    planned = scene.figures(chosen, directions)
+    random = scene.random(spec.choose, directions, rng)
+    if planned is None or random is None:
+        raise _too_few(spec, scene)
+    some = rng.choice(len(scene.rows), spec.choose, replace=False)
+    to_rows = candidate_rows(spec, arm, probe, free, candidates.select(np.concatenate([chosen, some])))
+    own, others = (part.reshape(-1, len(free)) for part in np.split(to_rows, [len(chosen)]))
+    return Plan(
+        arm=arm,
+        spec=spec,
+        chosen=in_order(candidates.select(chosen)),
+        planned=planned,
+        random=random,
+        paper=scene.random(PAPER, directions, rng),
+        observability=observability(own, scene.coordinates),
+        random_observability=observability(others, scene.coordinates),
+        curve=[*_curve(scene, directions, rng, told), (spec.choose, planned.u_length_mm, random.u_length_mm)],
+        trial=_trial(arm, spec, mover, probe, free, candidates, chosen, scene, rng, told),
+        determined=scene.coordinates.rank,
+        free=len(free),
+        candidates=len(candidates),
+        seconds={"candidates": drawn - began, "rows": rowed - drawn, "choice": finished - rowed},
+    )
+
+
+def _scene(
+    arm: Arm, spec: PlanSpec, mover: Mover, probe: int, free: I64, candidates: Candidates, rng: np.random.Generator
+) -> Scene:
+    rows = candidate_rows(spec, arm, probe, free, candidates)
+    taken = np.zeros((0, len(free))) if spec.taken is None else taken_rows(spec, spec.taken, arm, free)
+    units = np.array(arm.parameter_units)[free]
+    natural = np.where(units == "mm", 1.0, arm.core.reach_mm(probe))
+    coordinates = Coordinates.of(np.concatenate([rows.reshape(-1, len(free)), taken]), natural)
+    at_hand = taken @ coordinates.to_free
+    tests = Tests.of(arm, spec, mover, probe, free, coordinates, rng)
+    return Scene(spec, np.ascontiguousarray(rows @ coordinates.to_free), coordinates, at_hand.T @ at_hand, tests)
+
+
+def _few_places(
+    arm: Arm,
+    spec: PlanSpec,
+    probe: int,
+    free: I64,
+    candidates: Candidates,
+    scene: Scene,
+    directions: F64 | None,
+    rng: np.random.Generator,
+    told: Progress,
+) -> tuple[Candidates, Scene]:
+    """The best places first, each judged by some of its measurements together; then candidates in these alone."""
+    assert spec.placements is not None
+    places = len(candidates.features_mm)
+    some = np.stack([rng.choice(np.flatnonzero(candidates.place == k), PLACED, replace=False) for k in range(places)])
+    r = scene.rows.shape[2]
+    together = replace(scene, rows=np.ascontiguousarray(scene.rows[some].reshape(places, -1, r)))
+    best = together.choose(spec.placements, directions, told)
+    mover = Mover(arm, travel(arm, spec))
+    at_mm = candidates.features_mm[best]
+    each = -(-spec.candidates // spec.placements)
+    features = at_mm.shape[1]
+    pairs = features == 2 and spec.touches == 1
+    postures = int(np.ceil(np.sqrt(each))) if pairs else EACH
+    points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
+    q_rad, reached = mover.on_points(points, np.full(len(points), probe), None, int(rng.integers(2**63)))
+    q_rad = q_rad.reshape(len(best), features, postures, -1)
+    # a posture that was not found again gives way to one that was: they are all of one feature
+    for k, j in zip(*np.nonzero(~reached.reshape(q_rad.shape[:3]).all(axis=2)), strict=True):
+        found = np.flatnonzero(reached.reshape(q_rad.shape[:3])[k, j])
+        if not len(found):
+            q_rad[k, j] = candidates.q_rad[best[k], j, np.arange(postures) % candidates.q_rad.shape[2]]
+        else:
+            q_rad[k, j] = q_rad[k, j, np.resize(found, postures)]
+    inside = combine(at_mm, q_rad, each, spec.touches, rng)
+    rows = candidate_rows(spec, arm, probe, free, inside) @ scene.coordinates.to_free
+    return inside, replace(scene, rows=np.ascontiguousarray(rows))
+
+
+def _curve(
+    scene: Scene, directions: F64 | None, rng: np.random.Generator, told: Progress
+) -> list[tuple[int, float, float]]:
+    spec = scene.spec
+    least = -(-scene.coordinates.rank // scene.rows.shape[1]) if not scene.fixed.any() else 1
+    wanted = {round(spec.choose * part) for part in (0.35, 0.5, 0.7)} | {least + 3}
+    counts = sorted(count for count in wanted if least < count < spec.choose)
+    # what a number is worth is seen on some of the candidates as well
+    few = replace(scene, rows=scene.rows[rng.choice(len(scene.rows), min(CURVE_OF, len(scene.rows)), replace=False)])
+    curve = []
+    for done, count in enumerate(counts):
+        told("curve", done, len(counts))
+        best, by_chance = few.figures(few.choose(count, directions), directions), few.random(count, directions, rng)
+        if best is not None and by_chance is not None:
+            curve.append((count, best.u_length_mm, by_chance.u_length_mm))
+    return curve
+
+
+def _trial(
+    arm: Arm,
+    spec: PlanSpec,
+    mover: Mover,
+    probe: int,
+    free: I64,
+    candidates: Candidates,
+    chosen: I64,
+    scene: Scene,
+    rng: np.random.Generator,
+    told: Progress,
+) -> Trial | None:
+    """On bars that no criterion has seen."""
+    if not spec.trials or spec.taken is not None:
+        return None
+    fresh_rad = Tests.of(arm, spec, mover, probe, free, scene.coordinates, rng).q_rad
+    some = [rng.choice(len(candidates), spec.choose, replace=False) for _ in range(TRIAL_SETS)]
+    told("trial", 0, 2)
+    own, good = carry_out(arm, spec, probe, free, [candidates.select(chosen)], fresh_rad, spec.trials, spec.seed)
+    told("trial", 1, 2)
+    sets = [candidates.select(which) for which in some]
+    others, also = carry_out(arm, spec, probe, free, sets, fresh_rad, spec.trials, spec.seed + 1)
+    return Trial(spec.trials, own, others, good + also)
+
+
+def _too_few(spec: PlanSpec, scene: Scene) -> UlnaInputError:
+    return UlnaInputError(
+        f"{spec.label}: {spec.choose} measurements of {scene.rows.shape[1]} equations each are too few for the "
+        f"{scene.coordinates.rank} directions that are to be determined, when taken at random. Choose more, or hold "
+        "parameters."
+    )

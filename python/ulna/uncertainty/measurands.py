@@ -1,0 +1,128 @@
+"""What is measured with an arm: a point, a length, a ball, the distance of a point from a plane. Lengths mm.
+
+Each is a function of the tip's positions at some poses, each pose at a named feature; it is evaluated for many sets of
+positions at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.errors import UlnaInputError
+
+F64 = NDArray[np.float64]
+
+ROUNDS = 50
+"""Gauss–Newton steps of a sphere, at the most; each is quadratic near the end."""
+
+
+@dataclass(frozen=True)
+class Measurand:
+    """A kind of thing to measure."""
+
+    features: dict[str, int]
+    """What is touched → how often at the least."""
+    names: tuple[str, ...]
+    """Of its values, all in mm."""
+    of: Callable[..., F64]
+    """One (T, N, 3) of tip positions for each feature → (T, values)."""
+
+
+def _point(touches: F64) -> F64:
+    mean: F64 = touches.mean(axis=1)
+    return mean
+
+
+def _length(a: F64, b: F64) -> F64:
+    apart: F64 = np.linalg.norm(b.mean(axis=1) - a.mean(axis=1), axis=1, keepdims=True)
+    return apart
+
+
+def _ball(touches: F64) -> F64:
+    """Centre and diameter of the least-squares sphere: algebraic first, then Gauss–Newton on the distances."""
+    middle = touches.mean(axis=1, keepdims=True)
+    at = touches - middle
+    linear = np.concatenate([2.0 * at, np.ones((*at.shape[:2], 1))], axis=2)
+    found = _solved(linear, (at**2).sum(axis=2))
+    centre = found[:, :3]
+    radius = np.sqrt(np.maximum(found[:, 3] + (centre**2).sum(axis=1), 0.0))
+    for _ in range(ROUNDS):
+        away = at - centre[:, None]
+        distance = np.linalg.norm(away, axis=2)
+        jacobian = np.concatenate([-away / distance[:, :, None], -np.ones((*distance.shape, 1))], axis=2)
+        step = _solved(jacobian, radius[:, None] - distance)
+        centre, radius = centre + step[:, :3], radius + step[:, 3]
+        if np.abs(step).max() < 1e-12 * radius.max():
+            break
+    return np.concatenate([centre + middle[:, 0], 2.0 * radius[:, None]], axis=1)
+
+
+def _solved(jacobian: F64, right: F64) -> F64:
+    """(T, k) least squares of (T, N, k) rows: by QR, so that a small cap loses no digits twice."""
+    q, r = np.linalg.qr(jacobian)
+    solution: F64 = np.linalg.solve(r, np.einsum("tnk,tn->tk", q, right)[..., None])[..., 0]
+    return solution
+
+
+def _distance(plane: F64, point: F64) -> F64:
+    """Of the mean of the point's touches from the least-squares plane; positive on the base's side."""
+    middle = plane.mean(axis=1)
+    _, _, axes = np.linalg.svd(plane - middle[:, None], full_matrices=False)
+    normal = axes[:, 2]
+    normal = normal * np.where((normal * middle).sum(axis=1) > 0.0, -1.0, 1.0)[:, None]
+    away: F64 = ((point.mean(axis=1) - middle) * normal).sum(axis=1, keepdims=True)
+    return away
+
+
+MEASURANDS: dict[str, Measurand] = {
+    "point": Measurand({"point": 1}, ("x", "y", "z"), _point),
+    "length": Measurand({"A": 1, "B": 1}, ("length",), _length),
+    "ball": Measurand({"ball": 4}, ("x", "y", "z", "diameter"), _ball),
+    "distance": Measurand({"plane": 3, "point": 1}, ("distance",), _distance),
+}
+
+
+@dataclass(frozen=True)
+class Touched:
+    """A measurand and which pose is at which of its features."""
+
+    kind: str
+    feature: NDArray[np.int64]
+    """(N,) index into the measurand's features."""
+
+    @property
+    def measurand(self) -> Measurand:
+        """What it is."""
+        return MEASURANDS[self.kind]
+
+    def check(self, label: str) -> None:
+        """Raises UlnaInputError where a feature is not touched often enough; label: what to call the readings."""
+        for number, (name, least) in enumerate(self.measurand.features.items()):
+            count = int((self.feature == number).sum())
+            if count < least:
+                raise UlnaInputError(
+                    f"{label}: {count} readings of feature '{name}', but a {self.kind} needs {least} at the least. "
+                    "Take more, or correct the column feature."
+                )
+
+    def values(self, tips_mm: F64) -> F64:
+        """(T, N, 3) tip positions → (T, values), mm."""
+        groups = (tips_mm[:, self.feature == k] for k in range(len(self.measurand.features)))
+        return self.measurand.of(*groups)
+
+    def gradient(self, tips_mm: F64) -> F64:
+        """(values, N, 3): ∂value/∂coordinate at (N, 3) tips, by central differences."""
+        count = len(tips_mm)
+        h = 1e-3
+        moved = np.repeat(tips_mm[None], 6 * count, axis=0).reshape(count, 3, 2, count, 3)
+        for n in range(count):
+            for j in range(3):
+                moved[n, j, 0, n, j] += h
+                moved[n, j, 1, n, j] -= h
+        values = self.values(moved.reshape(-1, count, 3)).reshape(count, 3, 2, -1)
+        gradient: F64 = np.moveaxis((values[:, :, 0] - values[:, :, 1]) / (2.0 * h), -1, 0)
+        return gradient
