@@ -310,9 +310,11 @@ def test_wrong_tasks(result: Path, tmp_path: Path) -> None:
     refused('kind = "point"\np = 95\n[readings]\nfile = "bare.csv"\n', "key 'p'", "95")
     refused('kind = "point"\n[readings]\nfile = "bare.csv"\n[noise]\nseat = 0\n', "key 'noise.seat'")
     refused('kind = "point"\n[readings]\nfile = "none.csv"\n', "none.csv")
+    pl.concat([frame] * 400).write_csv(tmp_path / "scan.csv")
+    refused('kind = "ball"\n[readings]\nfile = "scan.csv"\n', "1200 readings", "at most 1000", "ulna measure")
     good = of('kind = "point"\n[readings]\nfile = "bare.csv"\n')
     assert run("uncertainty", result, good, "--trials", "0").returncode == 0
-    assert_bad_input(run("uncertainty", result / "arm.toml", good), "arm.toml")
+    assert_bad_input(run("uncertainty", result / "arm.toml", good), "arm.toml", "the result.json of a calibration")
     assert_bad_input(run("uncertainty", result, good, "--trials", "-1"), "--trials")
 
 

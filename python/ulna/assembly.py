@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.parameters import hold_mask, priors, start_arm
-from ulna.study import SURFACES, Noise, Readings, Study
+from ulna.study import SURFACES, Artefact, Noise, Readings, Study
 
 if TYPE_CHECKING:
     from ulna import _core
@@ -140,22 +140,27 @@ def balls_mm(study: Study, arm: Arm, group: Readings) -> F64:
     A plane touched with one probe does not need its ball: the plane lies by half of it farther in, that is all.
     """
     assert group.artefact.kind in SURFACES
-    used = np.unique(group.probe).tolist()
-    balls = [probe.ball_mm for probe in arm.probes.values()]
+    check_balls(group.artefact, arm, np.unique(group.probe).tolist(), study.label)
+    return np.array([probe.ball_mm or 0.0 for probe in arm.probes.values()])
+
+
+def check_balls(artefact: Artefact, arm: Arm, used: Sequence[int], label: str) -> None:
+    """Whether the balls of the probes that are used can touch the surface, and are known where they matter.
+
+    label: what messages call the file. Raises UlnaInputError.
+    """
+    names, balls = list(arm.probes), [probe.ball_mm for probe in arm.probes.values()]
     unknown = [k for k in used if balls[k] is None]
-    if unknown and (group.artefact.kind == "sphere" or len(used) > 1):
-        name = list(arm.probes)[unknown[0]]
+    if unknown and (artefact.kind == "sphere" or (artefact.kind == "plane" and len(used) > 1)):
+        name = names[unknown[0]]
         raise UlnaInputError(
-            f"{study.label}: artefact '{group.artefact.name}' is touched on its surface with probe '{name}', whose "
-            f"ball has no diameter in arm '{arm.name}'; expected probe.{name}.ball, in the arm file's length unit. Add "
-            "it."
+            f"{label}: artefact '{artefact.name}' is touched on its surface with probe '{name}', whose ball has no "
+            f"diameter in arm '{arm.name}'; expected probe.{name}.ball, in the arm file's length unit. Add it."
         )
-    artefact = group.artefact
     wide = [k for k in used if artefact.inside and (balls[k] or 0.0) >= (artefact.diameter_mm or 0.0)]
     if wide:
         raise UlnaInputError(
-            f"{study.label}: artefact '{artefact.name}' is a hollow of {artefact.diameter_mm:g} mm, but the ball of "
-            f"probe '{list(arm.probes)[wide[0]]}' has {balls[wide[0]]:g} mm; expected a smaller ball. Correct the "
-            "diameters, or remove inside."
+            f"{label}: artefact '{artefact.name}' is a hollow of {artefact.diameter_mm:g} mm, but the ball of probe "
+            f"'{names[wide[0]]}' has {balls[wide[0]]:g} mm; expected a smaller ball. Correct the diameters, or remove "
+            "inside."
         )
-    return np.array([ball or 0.0 for ball in balls])

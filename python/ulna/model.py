@@ -97,6 +97,13 @@ class ParameterCovariance:
     lost: list[dict[str, Any]]
     """Directions that the data did not determine: ``{"combination": {name: weight}, "because", "remedy", …}``."""
 
+    def over(self, names: Sequence[str]) -> NDArray[np.float64]:
+        """(k, k) over these names, which contain its own; zero where it knows nothing: those parameters were held."""
+        whole = np.zeros((len(names), len(names)))
+        columns = [list(names).index(name) for name in self.names]
+        whole[np.ix_(columns, columns)] = self.matrix
+        return whole
+
     def of(self, names: Sequence[str]) -> ParameterCovariance:
         """That of some of the parameters alone."""
         kept = [k for k, name in enumerate(self.names) if name in names]

@@ -109,9 +109,7 @@ def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
     known = arm.uncertainty
     assert known is not None
     names = arm.parameter_names
-    whole = np.zeros((len(names), len(names)))
-    columns = [names.index(name) for name in known.names]
-    whole[np.ix_(columns, columns)] = known.matrix
+    whole = known.over(names)
     if encoder_u_rad is not None:
         linked = arm.n if arm.full_last_link else arm.n - 1
         offsets = [names.index(f"joint.{k}.theta0") for k in range(1, linked + 1)]

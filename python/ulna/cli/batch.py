@@ -7,23 +7,22 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import Force, Json
+from ulna.cli.options import Dask, Force, Json
 from ulna.cli.running import guard
 
 
 @guard
 def batch(
-    folder: Annotated[Path, typer.Argument(metavar="{FOLDER}", help="Folder with studies in it, at any depth.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="Folder with studies in it, at any depth.", show_default=False)
+    ],
     out: Annotated[
         Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the results, one for each study.")
     ],
     only: Annotated[
         str, typer.Option("--only", metavar="PATTERN", help="Which studies, by names such as press/*/study.")
     ] = "*",
-    dask: Annotated[
-        str | None,
-        typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers do it."),
-    ] = None,
+    dask: Dask = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:

@@ -15,6 +15,10 @@ OutFolder = Annotated[
     Path | None,
     typer.Option("-o", "--out", metavar="DIR", help="Folder to write to; without it nothing is written."),
 ]
+Dask = Annotated[
+    str | None,
+    typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers do it."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import Force, Json, OutFolder
+from ulna.cli.options import Dask, Force, Json, OutFolder
 from ulna.cli.running import guard
 
 FILE = "uncertainty.json"
@@ -29,10 +29,7 @@ def uncertainty(
         int, typer.Option("--trials", metavar="N", help="At the most, of Monte Carlo; 0: none.")
     ] = 1_000_000,
     seed: Annotated[int, typer.Option("--seed", metavar="N", help="Of the random numbers.")] = 0,
-    dask: Annotated[
-        str | None,
-        typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that repeats the calibrations."),
-    ] = None,
+    dask: Dask = None,
     out: OutFolder = None,
     force: Force = False,
     as_json: Json = False,

@@ -11,10 +11,14 @@ from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.parameters import hold_mask
 from ulna.plan_spec import PlanSpec
+from ulna.planning.candidates import EACH
 from ulna.study import FitOptions, Study
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
+
+LEAST_CANDIDATES = 1000
+"""Fewer stand in fewer than ten places, which do not show everything that the arm can be asked."""
 
 
 def free_parameters(arm: Arm, spec: PlanSpec) -> I64:
@@ -57,6 +61,17 @@ def check(arm: Arm, spec: PlanSpec) -> None:
         raise UlnaInputError(
             f"{spec.label}: the links of arm '{arm.name}' grow with temperature, which plans do not cover. Remove "
             "expansion from the arm file."
+        )
+    if spec.candidates < LEAST_CANDIDATES:
+        raise UlnaInputError(
+            f"{spec.label}: {spec.candidates} candidates; expected {LEAST_CANDIDATES} or more: of few places nobody "
+            "sees what the arm's volume would tell. Raise candidates."
+        )
+    places = spec.candidates // EACH
+    if spec.artefact.frame == "free" and places < (spec.placements or 0) < spec.choose:
+        raise UlnaInputError(
+            f"{spec.label}: {spec.placements} placements, but {spec.candidates} candidates stand in "
+            f"{places} places; expected as many or more. Raise candidates."
         )
     if spec.choose > spec.candidates:
         raise UlnaInputError(

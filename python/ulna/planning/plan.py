@@ -107,7 +107,9 @@ def plan(arm: Arm, spec: PlanSpec, progress: Progress | None = None) -> Plan:
     told("candidates", 3, 3)
     directions = scene.directions(rng)
     if spec.placements is not None and spec.placements < spec.choose and spec.artefact.frame == "free":
-        candidates, scene = _few_places(arm, spec, probe, free, candidates, scene, directions, rng, told)
+        candidates, scene = _few_places(arm, spec, mover, probe, free, candidates, scene, directions, rng, told)
+    if not scene.fixed.any() and spec.choose * scene.rows.shape[1] < scene.coordinates.rank:
+        raise _too_few(spec, scene)
     rowed = time.perf_counter()
     chosen = scene.choose(spec.choose, directions, progress)
     finished = time.perf_counter()
@@ -152,6 +154,7 @@ def _scene(
 def _few_places(
     arm: Arm,
     spec: PlanSpec,
+    mover: Mover,
     probe: int,
     free: I64,
     candidates: Candidates,
@@ -167,7 +170,6 @@ def _few_places(
     r = scene.rows.shape[2]
     together = replace(scene, rows=np.ascontiguousarray(scene.rows[some].reshape(places, -1, r)))
     best = together.choose(spec.placements, directions, told)
-    mover = Mover(arm, travel(arm, spec))
     at_mm = candidates.features_mm[best]
     each = -(-spec.candidates // spec.placements)
     features = at_mm.shape[1]
@@ -232,8 +234,9 @@ def _trial(
 
 
 def _too_few(spec: PlanSpec, scene: Scene) -> UlnaInputError:
+    equations = spec.choose * scene.rows.shape[1]
     return UlnaInputError(
-        f"{spec.label}: {spec.choose} measurements of {scene.rows.shape[1]} equations each are too few for the "
-        f"{scene.coordinates.rank} directions that are to be determined, when taken at random. Choose more, or hold "
-        "parameters."
+        f"{spec.label}: key 'plan.choose': {spec.choose} measurements give {equations} equations, too few for the "
+        f"{scene.coordinates.rank} directions that are to be determined, by random ones at the least. Choose more, or "
+        "hold parameters."
     )

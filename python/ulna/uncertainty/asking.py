@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ulna.errors import InputWarning, UlnaInputError
-from ulna.files.arm import WHAT as WHAT_ARM
 from ulna.files.arm import arm_of_result
 from ulna.files.covariance import noise_of_result, seat_of_result
 from ulna.files.task import read_task
@@ -21,6 +20,8 @@ from ulna.uncertainty.assess import Assessment, assess
 from ulna.uncertainty.measurands import MEASURANDS, Touched
 from ulna.uncertainty.task import Task
 from ulna.work.pieces import Workers
+
+WHAT = "the result.json of a calibration"
 
 Progress = Callable[[str, int, int], None]
 
@@ -43,7 +44,7 @@ def uncertainty(
     """
     result, task = Path(result), Path(task)
     result = result / "result.json" if result.is_dir() else result
-    document, _ = read_json(result, WHAT_ARM)
+    document, _ = read_json(result, WHAT)
     check_format(document, result, "ulna-result")
     arm = arm_of_result(document, result)
     made = document.get("provenance", {})

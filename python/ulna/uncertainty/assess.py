@@ -16,7 +16,7 @@ from ulna.directions import worth_naming
 from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.study import Study
-from ulna.uncertainty.first_order import first_order, parameter_covariance
+from ulna.uncertainty.first_order import first_order
 from ulna.uncertainty.gum import coverage_factor, effective_degrees_of_freedom
 from ulna.uncertainty.monte_carlo import MonteCarlo, adaptive, agrees
 from ulna.uncertainty.regions import Ellipsoid, ellipsoid
@@ -198,7 +198,9 @@ def _simulated(
 
 def _from_covariance(arm: Arm, degrees_of_freedom: float, seed: int) -> Sets:
     """Normal; where the covariance was scaled by the calibration's own scatter, multivariate t (JCGM 101 6.4.9)."""
-    covariance = parameter_covariance(arm)
+    known = arm.uncertainty
+    assert known is not None
+    covariance = known.over(arm.parameter_names)
     # a covariance is singular along what is held or open: its root by eigenvectors, of what is scaled alike
     scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     scale[scale == 0.0] = 1.0

@@ -47,19 +47,10 @@ class FirstOrder:
         return total
 
 
-def parameter_covariance(arm: Arm) -> F64:
-    """(P, P) over all of the arm's parameters, zero where held; NaN where the calibration could not estimate it."""
-    known = arm.uncertainty
-    assert known is not None
-    names = arm.parameter_names
-    whole = np.zeros((len(names), len(names)))
-    columns = [names.index(name) for name in known.names]
-    whole[np.ix_(columns, columns)] = known.matrix
-    return whole
-
-
 def first_order(arm: Arm, task: Task) -> FirstOrder:
     """`arm.uncertainty` must be set. Raises UlnaInputError for a length of nothing."""
+    known = arm.uncertainty
+    assert known is not None
     tips_mm = task.tips_mm(arm, task.q_rad)
     if task.touched.kind == "length" and task.touched.values(tips_mm[None])[0, 0] < NOTHING_MM:
         raise UlnaInputError(
@@ -68,7 +59,7 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
         )
     gradient = task.touched.gradient(tips_mm)
     by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, task.temperature_c))
-    sources = {"parameters": propagate(by_parameter, parameter_covariance(arm))}
+    sources = {"parameters": propagate(by_parameter, known.over(arm.parameter_names))}
     if task.encoder_rad is not None:
         warmth = arm.warmth_k(task.temperature_c, len(tips_mm))
         by_angle = arm.core.encoder_jacobian(task.q_rad, arm.probe_index(task.probe), warmth)

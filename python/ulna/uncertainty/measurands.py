@@ -16,6 +16,8 @@ from ulna.errors import UlnaInputError
 
 F64 = NDArray[np.float64]
 
+MOST_READINGS = 1000
+"""Of one measurement: what a plane or a ball is touched at, not a scan."""
 ROUNDS = 50
 """Gauss–Newton steps of a sphere, at the most; each is quadratic near the end."""
 
@@ -101,6 +103,11 @@ class Touched:
 
     def check(self, label: str) -> None:
         """Raises UlnaInputError where a feature is not touched often enough; label: what to call the readings."""
+        if len(self.feature) > MOST_READINGS:
+            raise UlnaInputError(
+                f"{label}: {len(self.feature)} readings; expected at most {MOST_READINGS} of one measurement. Take "
+                "fewer, or use `ulna measure` for many points."
+            )
         for number, (name, least) in enumerate(self.measurand.features.items()):
             count = int((self.feature == number).sum())
             if count < least:

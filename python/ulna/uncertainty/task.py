@@ -61,6 +61,11 @@ class Task:
     def drawn(self, arm: Arm, parameters: F64, first: int, seed: int) -> F64:
         """(T, values) of trials first … first + T − 1, each with its own row of parameters (T, P) and with encoders,
         touches and temperature drawn anew."""
+        blocks = (slice(start, start + BLOCK) for start in range(0, len(parameters), BLOCK))
+        return np.concatenate([self._block(arm, parameters[rows], first + rows.start, seed) for rows in blocks])
+
+    def _block(self, arm: Arm, parameters: F64, first: int, seed: int) -> F64:
+        """Some of them, few enough that memory stays bounded."""
         count, poses = len(parameters), len(self.q_rad)
         noise = self._noise(first, count, seed)
         core, probe = arm.core, arm.probe_index(self.probe)

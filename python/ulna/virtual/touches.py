@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.assembly import check_balls
 from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.simulation import Touching
@@ -60,18 +61,7 @@ def probes_of(touching: Touching, arm: Arm, label: str) -> list[int]:
         raise UlnaInputError(f"{label}: key 'artefact.{name}.probe': {error} Correct it.") from None
     if len(set(used)) < len(used):
         raise UlnaInputError(f"{label}: key 'artefact.{name}.probe': a probe stands there twice. Remove one of them.")
-    for index in used:
-        probe, ball_mm = list(arm.probes)[index], list(arm.probes.values())[index].ball_mm
-        if ball_mm is None and (artefact.kind == "sphere" or (artefact.kind == "plane" and len(used) > 1)):
-            raise UlnaInputError(
-                f"{label}: artefact '{name}' is touched on its surface with probe '{probe}', whose ball has no "
-                f"diameter in arm '{arm.name}'; expected probe.{probe}.ball in the arm file. Add it."
-            )
-        if artefact.inside and (ball_mm or 0.0) >= (artefact.diameter_mm or 0.0):
-            raise UlnaInputError(
-                f"{label}: artefact '{name}' is a hollow of {artefact.diameter_mm:g} mm, but the ball of probe "
-                f"'{probe}' has {ball_mm:g} mm; expected a smaller ball. Correct the diameters, or remove inside."
-            )
+    check_balls(artefact, arm, used, label)
     return used
 
 
