@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 from docs_errors import error_page
+from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
 from docs_running import ROOT, reader_folder, ulna
 
@@ -30,6 +31,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
+    "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
@@ -44,6 +46,8 @@ OUTCOMES = "\nOn the same two arms"
 
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
+    "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
+    "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",
     "out/cheng2011/convergence.png": ROOT / "docs" / "pictures" / "cheng2011-convergence.png",
 }
@@ -139,6 +143,7 @@ def main() -> None:
     EXAMPLES_OUTPUT.mkdir(parents=True, exist_ok=True)
     for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
+    (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():
         printed = example_output(example)
