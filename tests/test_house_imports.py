@@ -10,12 +10,12 @@ import pytest
 PYTHON_LAYERS = [
     {"_core"},
     {"errors", "cores"},
-    {"effects"},
+    {"effects", "geometry"},
     {"directions"},
     {"model"},
     {"frames"},
     {"study"},
-    {"parameters", "options", "simulation", "plan_spec"},
+    {"parameters", "options", "simulation", "plan_spec", "performance"},
     {"files"},
     {
         "assembly",

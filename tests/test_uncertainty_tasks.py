@@ -105,10 +105,10 @@ def test_monte_carlo_agrees_with_the_first_order_where_all_is_linear(calibrated)
     assert value.monte_carlo is not None
     assert value.monte_carlo.settled
     assert value.first_order_is_good
-    assert value.monte_carlo.u == pytest.approx(value.u_mm, rel=0.02)
+    assert value.monte_carlo.u == pytest.approx(value.u, rel=0.02)
     low, high = value.monte_carlo.symmetric
-    assert (high - low) / 2 == pytest.approx(value.expanded_mm, rel=0.03)
-    assert value.u_mm**2 == pytest.approx(sum(u**2 for u in value.budget.values()))
+    assert (high - low) / 2 == pytest.approx(value.expanded, rel=0.03)
+    assert value.u**2 == pytest.approx(sum(u**2 for u in value.budget.values()))
     assert set(value.budget) == {"parameters", "encoders", "touch"}
 
 
@@ -166,8 +166,8 @@ def test_repeated_calibrations_start_where_the_calibration_ended(calibrated) -> 
     task = task_of("length", [0, 1], poses(2, 6))
     (redrawn,) = assess(arm, task, study=drawn, seed=2, most_trials=10_000).values
     assert redrawn.monte_carlo is not None
-    assert redrawn.monte_carlo.y == pytest.approx(redrawn.value_mm, abs=0.1 * (redrawn.u_mm or 0.0))
-    assert redrawn.monte_carlo.u == pytest.approx(redrawn.u_mm, rel=0.05)
+    assert redrawn.monte_carlo.y == pytest.approx(redrawn.value, abs=0.1 * (redrawn.u or 0.0))
+    assert redrawn.monte_carlo.u == pytest.approx(redrawn.u, rel=0.05)
 
 
 def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
@@ -178,7 +178,7 @@ def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
     assert value.k == pytest.approx(2.2281, abs=1e-4)
     assert value.monte_carlo is not None
     low, high = value.monte_carlo.symmetric
-    assert (high - low) / 2 == pytest.approx(value.expanded_mm, rel=0.03)
+    assert (high - low) / 2 == pytest.approx(value.expanded, rel=0.03)
     (stated,) = assess(arm, replace(task, degrees_of_freedom=np.inf), most_trials=0).values
     assert stated.k == pytest.approx(1.95996, abs=1e-5)
 
@@ -215,15 +215,16 @@ def test_held_parameters_count_as_exact_and_are_told(calibrated) -> None:
 def test_intervals_hold_the_truth() -> None:
     """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage.py does it
     a thousand times."""
-    shares = trial_shares(150)
-    for what, share in shares.items():
-        assert share == pytest.approx(0.95, abs=0.045), what
+    from benchmarks.coverage import by_calibrations, by_covariance
 
-
-def trial_shares(arms: int) -> dict[str, float]:
-    from benchmarks.coverage import shares
-
-    return shares(arms, trials=0)
+    held: dict[str, list[bool]] = {}
+    truth = true_arm(SEVEN)
+    for seed in range(1, 151):
+        by_covariance(truth, seed, 0, held)
+    for seed in range(1, 61):
+        by_calibrations(truth, seed, 200, held)
+    for what, each in held.items():
+        assert np.mean(each) == pytest.approx(0.95, abs=0.045), what
 
 
 def straight() -> tuple[Arm, Arm]:
@@ -239,9 +240,9 @@ def test_what_was_not_determined_has_no_figure() -> None:
     arm, other = straight()
     q_rad = poses(2, 9)
     (good,) = assess(arm, task_of("length", [0, 1], q_rad), most_trials=0).values
-    assert good.u_mm is not None
+    assert good.u is not None
     (lost,) = assess(other, task_of("length", [0, 1], q_rad)).values
-    assert (lost.u_mm, lost.expanded_mm, lost.monte_carlo, lost.budget) == (None, None, None, {})
+    assert (lost.u, lost.expanded, lost.monte_carlo, lost.budget) == (None, None, None, {})
     assert {direction["cause"] for direction in lost.not_determined} == {"probe-on-axis"}
 
 
@@ -257,13 +258,13 @@ def test_the_command(result: Path, root: Path, tmp_path: Path) -> None:
     done = run("uncertainty", result / "result.json", task, "-o", tmp_path / "u")
     assert done.returncode == 0, done.stderr
     assert max(map(len, done.stdout.splitlines())) <= 80
-    for words in ("the calibration's parameters", "first order good", "Left out", "eccentric encoders"):
+    for words in ("the arm's parameters", "first order good", "Left out", "eccentric encoders"):
         assert words in done.stdout
     written = json.loads((tmp_path / "u" / "uncertainty.json").read_text("utf-8"))
     printed = strict_json(run("uncertainty", result, task, "--json").stdout)
     assert printed == written
     (value,) = written["values"]
-    assert abs(value["value_mm"] - 443.172) < 2 * value["expanded_mm"]
+    assert abs(value["value"] - 443.172) < 2 * value["expanded"]
 
 
 def test_a_ball_from_a_file(result: Path, tmp_path: Path) -> None:
@@ -281,7 +282,7 @@ def test_a_ball_from_a_file(result: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     found = strict_json(done.stdout)
     assert [value["name"] for value in found["values"]] == ["x", "y", "z", "diameter"]
-    assert found["values"][3]["value_mm"] == pytest.approx(24.0, abs=0.03)  # the probe's own 6 mm taken off
+    assert found["values"][3]["value"] == pytest.approx(24.0, abs=0.03)  # the probe's own 6 mm taken off
     assert found["values"][3]["k"] == pytest.approx(2.5758, abs=1e-4)
 
 
@@ -324,7 +325,7 @@ def test_options_of_the_fit_do_not_matter_to_the_type(calibrated) -> None:
     held = ulna.calibrate(replace(study, fit=FitOptions(hold=["joint.3.*", "joint.1.theta0", "joint.1.d"])))
     (value,) = assess(held.arm, task_of("length", [0, 1], poses(2, 10)), seed=1).values
     assert value.monte_carlo is not None
-    assert value.monte_carlo.u == pytest.approx(value.u_mm, rel=0.02)
+    assert value.monte_carlo.u == pytest.approx(value.u, rel=0.02)
 
 
 def test_the_fossil_loads() -> None:

@@ -31,6 +31,17 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
+    "performance.txt": (
+        [
+            *("uncertainty", "out/demo/arm.toml", "examples/platinum/length.toml"),
+            *("--performance", "examples/platinum/performance.toml", "--trials", "20000"),
+        ],
+        None,
+    ),
+    "volume.txt": (
+        ["uncertainty", "out/demo/result.json", "examples/platinum/volume.toml", "-o", "out/volume"],
+        None,
+    ),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
@@ -46,6 +57,7 @@ OUTCOMES = "\nOn the same two arms"
 
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
+    "out/volume/volume.png": ROOT / "docs" / "pictures" / "volume.png",
     "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
     "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from ulna.simulate import Simulated, simulate
     from ulna.simulation import Simulation
     from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
-    from ulna.uncertainty.asking import uncertainty
+    from ulna.uncertainty.asking import uncertainty, volume_uncertainty
     from ulna.uncertainty.assess import Assessment
+    from ulna.uncertainty.volume import VolumeMap
 
 __all__ = [
     "Arm",
@@ -58,6 +59,7 @@ __all__ = [
     "Simulation",
     "Study",
     "UlnaInputError",
+    "VolumeMap",
     "__version__",
     "batch",
     "calibrate",
@@ -68,6 +70,7 @@ __all__ = [
     "plan",
     "simulate",
     "uncertainty",
+    "volume_uncertainty",
 ]
 
 _WHERE = {
@@ -92,6 +95,7 @@ _WHERE = {
     "Simulation": "simulation",
     "Study": "study",
     "UlnaInputError": "errors",
+    "VolumeMap": "uncertainty.volume",
     "batch": "batch",
     "calibrate": "calibrate",
     "cross_validate": "cross_validate",
@@ -101,6 +105,7 @@ _WHERE = {
     "plan": "planning.plan",
     "simulate": "simulate",
     "uncertainty": "uncertainty.asking",
+    "volume_uncertainty": "uncertainty.asking",
 }
 
 

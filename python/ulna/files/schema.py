@@ -13,11 +13,13 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ulna.files.arm import ArmFile
+from ulna.files.performance import PerformanceFile
 from ulna.files.plan import PlanFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.files.simulation_tables import SimulationFile
 from ulna.files.study import StudyFile
 from ulna.files.task import TaskFile
+from ulna.files.volume import VolumeFile
 
 MODELS: dict[str, type[BaseModel]] = {
     "ulna-arm-1": ArmFile,
@@ -25,6 +27,8 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-simulation-1": SimulationFile,
     "ulna-plan-1": PlanFile,
     "ulna-task-1": TaskFile,
+    "ulna-volume-1": VolumeFile,
+    "ulna-performance-1": PerformanceFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

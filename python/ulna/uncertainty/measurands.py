@@ -1,4 +1,5 @@
-"""What is measured with an arm: a point, a length, a ball, the distance of a point from a plane. Lengths mm.
+"""What is measured with an arm: a point, a length, a ball or a plane and their form, the distance of a point from a
+plane. Lengths mm.
 
 Each is a function of the tip's positions at some poses, each pose at a named feature; it is evaluated for many sets of
 positions at once.
@@ -13,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
+from ulna.geometry import planes, spheres
 
 F64 = NDArray[np.float64]
 
 MOST_READINGS = 1000
 """Of one measurement: what a plane or a ball is touched at, not a scan."""
-ROUNDS = 50
-"""Gauss–Newton steps of a sphere, at the most; each is quadratic near the end."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Measurand:
 
     features: dict[str, int]
     """What is touched → how often at the least."""
-    names: tuple[str, ...]
-    """Of its values, all in mm."""
+    units: dict[str, str]
+    """Name of each of its values → "mm" or "1"."""
     of: Callable[..., F64]
     """One (T, N, 3) of tip positions for each feature → (T, values)."""
 
@@ -45,46 +45,40 @@ def _length(a: F64, b: F64) -> F64:
 
 
 def _ball(touches: F64) -> F64:
-    """Centre and diameter of the least-squares sphere: algebraic first, then Gauss–Newton on the distances."""
-    middle = touches.mean(axis=1, keepdims=True)
-    at = touches - middle
-    linear = np.concatenate([2.0 * at, np.ones((*at.shape[:2], 1))], axis=2)
-    found = _solved(linear, (at**2).sum(axis=2))
-    centre = found[:, :3]
-    radius = np.sqrt(np.maximum(found[:, 3] + (centre**2).sum(axis=1), 0.0))
-    for _ in range(ROUNDS):
-        away = at - centre[:, None]
-        distance = np.linalg.norm(away, axis=2)
-        jacobian = np.concatenate([-away / distance[:, :, None], -np.ones((*distance.shape, 1))], axis=2)
-        step = _solved(jacobian, radius[:, None] - distance)
-        centre, radius = centre + step[:, :3], radius + step[:, 3]
-        if np.abs(step).max() < 1e-12 * radius.max():
-            break
-    return np.concatenate([centre + middle[:, 0], 2.0 * radius[:, None]], axis=1)
+    found = spheres(touches)
+    return np.concatenate([found.centre_mm, 2.0 * found.radius_mm[:, None]], axis=1)
 
 
-def _solved(jacobian: F64, right: F64) -> F64:
-    """(T, k) least squares of (T, N, k) rows: by QR, so that a small cap loses no digits twice."""
-    q, r = np.linalg.qr(jacobian)
-    solution: F64 = np.linalg.solve(r, np.einsum("tnk,tn->tk", q, right)[..., None])[..., 0]
-    return solution
+def _sphericity(touches: F64) -> F64:
+    return spheres(touches).form_mm[:, None]
+
+
+def _plane(touches: F64) -> F64:
+    """Normal, and distance from the origin along it: both turn with the base frame."""
+    found = planes(touches)
+    d_mm = (found.normal * found.middle_mm).sum(axis=1, keepdims=True)
+    return np.concatenate([found.normal, d_mm], axis=1)
+
+
+def _flatness(touches: F64) -> F64:
+    return planes(touches).form_mm[:, None]
 
 
 def _distance(plane: F64, point: F64) -> F64:
     """Of the mean of the point's touches from the least-squares plane; positive on the base's side."""
-    middle = plane.mean(axis=1)
-    _, _, axes = np.linalg.svd(plane - middle[:, None], full_matrices=False)
-    normal = axes[:, 2]
-    normal = normal * np.where((normal * middle).sum(axis=1) > 0.0, -1.0, 1.0)[:, None]
-    away: F64 = ((point.mean(axis=1) - middle) * normal).sum(axis=1, keepdims=True)
+    found = planes(plane)
+    away: F64 = ((found.middle_mm - point.mean(axis=1)) * found.normal).sum(axis=1, keepdims=True)
     return away
 
 
 MEASURANDS: dict[str, Measurand] = {
-    "point": Measurand({"point": 1}, ("x", "y", "z"), _point),
-    "length": Measurand({"A": 1, "B": 1}, ("length",), _length),
-    "ball": Measurand({"ball": 4}, ("x", "y", "z", "diameter"), _ball),
-    "distance": Measurand({"plane": 3, "point": 1}, ("distance",), _distance),
+    "point": Measurand({"point": 1}, {"x": "mm", "y": "mm", "z": "mm"}, _point),
+    "length": Measurand({"A": 1, "B": 1}, {"length": "mm"}, _length),
+    "ball": Measurand({"ball": 4}, {"x": "mm", "y": "mm", "z": "mm", "diameter": "mm"}, _ball),
+    "sphericity": Measurand({"ball": 5}, {"form": "mm"}, _sphericity),
+    "plane": Measurand({"plane": 3}, {"n_x": "1", "n_y": "1", "n_z": "1", "d": "mm"}, _plane),
+    "flatness": Measurand({"plane": 4}, {"form": "mm"}, _flatness),
+    "distance": Measurand({"plane": 3, "point": 1}, {"distance": "mm"}, _distance),
 }
 
 
@@ -117,7 +111,7 @@ class Touched:
                 )
 
     def values(self, tips_mm: F64) -> F64:
-        """(T, N, 3) tip positions → (T, values), mm."""
+        """(T, N, 3) tip positions → (T, values), in their units."""
         groups = (tips_mm[:, self.feature == k] for k in range(len(self.measurand.features)))
         return self.measurand.of(*groups)
 
