@@ -54,7 +54,7 @@ class Clouds:
     @property
     def count(self) -> int:
         """Points of each set."""
-        return self.at.shape[1]
+        return int(self.at.shape[1])
 
     def axes(self) -> tuple[F64, F64]:
         """(T, 3) extents and (T, 3, 3) principal directions as rows, the widest first."""

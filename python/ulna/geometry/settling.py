@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 Bool = NDArray[np.bool_]
 
 ROUNDS = 200
@@ -19,6 +20,8 @@ HALVINGS = 12
 """Of a step that does not lead down; smaller ones are within rounding."""
 SMALL = 1e-14
 """A step this small, of unknowns of the size of one, changes nothing."""
+ROUNDING = 1e-14
+"""Of a sum of squares, relative: a step that raises it by no more does not lead up."""
 
 
 class Surface(Protocol):
@@ -44,50 +47,45 @@ def solved(jacobian: F64, right: F64) -> F64:
 def settle(surface: Surface, start: F64) -> tuple[F64, Bool]:
     """(T, k) least-squares states from (T, k) starts, and which of them (T,) settled.
 
-    A problem has settled when its step is within rounding, or when no step leads down any more.
+    A problem has settled when its step is within rounding: small, or no longer smaller than the last one while the sum
+    of squares stays, or leading down nowhere.
     """
     state = start.copy()
-    rest = np.ones(len(state), dtype=bool)
-    cost = (surface.residuals(state, rest) ** 2).sum(axis=1)
+    cost = (surface.residuals(state, np.ones(len(state), dtype=bool)) ** 2).sum(axis=1)
+    settled, lost = np.zeros(len(state), dtype=bool), ~np.isfinite(cost)
+    last = np.full(len(state), np.inf)
     for _ in range(ROUNDS):
+        rest = ~settled & ~lost
         if not rest.any():
             break
-        here = state[rest]
         try:
-            step = solved(surface.jacobian(here, rest), -surface.residuals(here, rest))
+            step = solved(surface.jacobian(state[rest], rest), -surface.residuals(state[rest], rest))
         except np.linalg.LinAlgError:
             break  # some problem does not determine its unknowns: it never settles
-        size = np.abs(step).max(axis=1)
-        rest, state, cost = _down(surface, state, cost, rest, step, size)
-    return state, ~rest
+        numbers = np.flatnonzero(rest)
+        size = np.abs(step).max(axis=1) / np.maximum(1.0, np.abs(state[numbers]).max(axis=1))
+        lost[numbers[~np.isfinite(size)]] = True
+        before = cost[numbers]
+        moved = _down(surface, state, cost, numbers, step, np.isfinite(size))
+        stays = before - cost[numbers] <= ROUNDING * before
+        settled[numbers] = np.isfinite(size) & (~moved | (size <= SMALL) | (stays & (size >= 0.5 * last[numbers])))
+        last[numbers] = size
+    return state, settled
 
 
-def _down(surface: Surface, state: F64, cost: F64, rest: Bool, step: F64, size: F64) -> tuple[Bool, F64, F64]:
-    """One step of each of the rest, halved until it leads down. Returns who goes on, the states and costs."""
-    numbers = np.flatnonzero(rest)
-    go_on = np.isfinite(size)
-    open_ = go_on.copy()
-    share = 1.0
-    state, cost, done = state.copy(), cost.copy(), np.zeros(len(numbers), dtype=bool)
-    for _ in range(HALVINGS):
-        own = np.zeros_like(rest)
-        own[numbers[open_]] = True
-        if not own.any():
+def _down(surface: Surface, state: F64, cost: F64, numbers: I64, step: F64, tried: Bool) -> Bool:
+    """Take the steps of the problems `numbers`, halved until they do not lead up: `state` and `cost` are changed. Which
+    of them were taken."""
+    waiting, taken = tried.copy(), np.zeros(len(numbers), dtype=bool)
+    for halving in range(HALVINGS):
+        if not waiting.any():
             break
-        tried = surface.moved(state[own], share * step[open_])
-        new = (surface.residuals(tried, own) ** 2).sum(axis=1)
-        better = new < cost[own]
-        taken = np.flatnonzero(open_)[better]
-        state[numbers[taken]], cost[numbers[taken]] = tried[better], new[better]
-        open_[taken] = False
-        small = open_ & (share * size <= 1e3 * SMALL * np.maximum(1.0, np.abs(state[numbers]).max(axis=1)))
-        done |= small  # no way down, and the step is within rounding
-        open_ &= ~small
-        share *= 0.5
-    scale = np.maximum(1.0, np.abs(state[numbers]).max(axis=1))
-    done |= (size <= SMALL * scale) | open_  # also where halving found no way down: that is the bottom, as far as seen
-    going = rest.copy()
-    going[numbers] = go_on & ~done
-    stuck = ~go_on
-    going[numbers[stuck]] = True
-    return going, state, cost
+        own = np.zeros(len(state), dtype=bool)
+        own[numbers[waiting]] = True
+        there = surface.moved(state[own], 0.5**halving * step[waiting])
+        new = (surface.residuals(there, own) ** 2).sum(axis=1)
+        good = new <= cost[own] * (1.0 + ROUNDING)
+        which = np.flatnonzero(waiting)[good]
+        state[numbers[which]], cost[numbers[which]] = there[good], new[good]
+        taken[which], waiting[which] = True, False
+    return taken
