@@ -16,9 +16,9 @@ Bool = NDArray[np.bool_]
 
 ROUNDS = 200
 """Steps at the most. A good start needs 3 to 6; a flat cap with noise some tens."""
-HALVINGS = 12
+HALVINGS = 10
 """Of a step that does not lead down; smaller ones are within rounding."""
-SMALL = 1e-14
+SMALL = 1e-13
 """A step this small, of unknowns of the size of one, changes nothing."""
 ROUNDING = 1e-14
 """Of a sum of squares, relative: a step that raises it by no more does not lead up."""
