@@ -10,7 +10,8 @@ import pytest
 PYTHON_LAYERS = [
     {"_core"},
     {"errors", "cores"},
-    {"effects", "geometry"},
+    {"geometry"},
+    {"effects"},
     {"directions"},
     {"model"},
     {"frames"},
@@ -46,6 +47,7 @@ PYTHON_LAYERS = [
         "batch",
         "uncertainty",
         "planning",
+        "verification",
         "reproduce",
     },
     {"report"},

@@ -1,6 +1,1 @@
-"""Least-squares shapes through measured points: one file each. Many sets of points at once; lengths mm."""
-
-from ulna.geometry.plane import Planes, planes
-from ulna.geometry.sphere import Spheres, spheres
-
-__all__ = ["Planes", "Spheres", "planes", "spheres"]
+"""Least-squares fits and the smallest enclosing sphere of points, for many sets of points at once. Lengths mm."""

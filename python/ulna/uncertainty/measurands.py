@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.geometry import planes, spheres
+from ulna.geometry.plane import fit_plane
+from ulna.geometry.sphere import fit_sphere
 
 F64 = NDArray[np.float64]
 
@@ -45,30 +46,29 @@ def _length(a: F64, b: F64) -> F64:
 
 
 def _ball(touches: F64) -> F64:
-    found = spheres(touches)
+    """Centre and diameter of the least-squares sphere."""
+    found = fit_sphere(touches, "ball")
     return np.concatenate([found.centre_mm, 2.0 * found.radius_mm[:, None]], axis=1)
 
 
 def _sphericity(touches: F64) -> F64:
-    return spheres(touches).form_mm[:, None]
+    return fit_sphere(touches, "ball").form_mm[:, None]
 
 
 def _plane(touches: F64) -> F64:
-    """Normal, and distance from the origin along it: both turn with the base frame."""
-    found = planes(touches)
-    d_mm = (found.normal * found.middle_mm).sum(axis=1, keepdims=True)
+    """Normal, towards the base, and distance from the origin: both turn with the base frame."""
+    found = fit_plane(touches, "plane")
+    d_mm = -(found.normal * found.point_mm).sum(axis=1, keepdims=True)
     return np.concatenate([found.normal, d_mm], axis=1)
 
 
 def _flatness(touches: F64) -> F64:
-    return planes(touches).form_mm[:, None]
+    return fit_plane(touches, "plane").form_mm[:, None]
 
 
 def _distance(plane: F64, point: F64) -> F64:
     """Of the mean of the point's touches from the least-squares plane; positive on the base's side."""
-    found = planes(plane)
-    away: F64 = ((found.middle_mm - point.mean(axis=1)) * found.normal).sum(axis=1, keepdims=True)
-    return away
+    return fit_plane(plane, "plane").distance_mm(point.mean(axis=1))[:, None]
 
 
 MEASURANDS: dict[str, Measurand] = {

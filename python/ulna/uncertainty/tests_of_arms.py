@@ -13,9 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.geometry import spheres
+from ulna.geometry.sphere import fit_sphere
 from ulna.model import Arm
 from ulna.performance import Figure, LengthTest, Performance, PointTest, SphereTest, Test
+from ulna.verification.figures.asme_b89_4_22 import single_point, volumetric
+from ulna.verification.figures.faro import half_ranges
+from ulna.verification.figures.iso_10360_12 import probing_of
 from ulna.virtual.places import Standing, places
 from ulna.virtual.postures import Mover
 
@@ -55,31 +58,29 @@ class SetUp:
 
 def _of_points(measured: F64) -> dict[Figure, F64]:
     """(A, seats, touches, 3)"""
-    away = np.linalg.norm(measured - measured.mean(axis=2, keepdims=True), axis=3)
-    scatter = np.sqrt((away**2).sum(axis=2) / (away.shape[2] - 1))
-    half = 0.5 * np.ptp(measured, axis=2).max(axis=2)
-    return {"largest": away.max(axis=(1, 2)), "two_s": 2.0 * scatter.max(axis=1), "half_range": half.max(axis=1)}
+    largest, two_s = (figure.value.max(axis=1) for figure in single_point(measured))
+    half = np.max([figure.value for figure in half_ranges(measured)], axis=(0, 2))
+    return {"largest": largest, "two_s": two_s, "half_range": half}
 
 
 def _of_lengths(measured: F64, true: F64) -> dict[Figure, F64]:
     """(A, bars, 2, 3), (bars, 2, 3)"""
-    error = np.linalg.norm(np.diff(measured, axis=2)[:, :, 0], axis=2) - np.linalg.norm(
-        np.diff(true, axis=1)[:, 0], axis=1
-    )
-    return {
-        "largest": np.abs(error).max(axis=1),
-        "two_sigma": 2.0 * error.std(axis=1, ddof=1) if error.shape[1] > 1 else np.zeros(len(error)),
-        "half_range": 0.5 * np.ptp(error, axis=1),
-    }
+    error = _apart(measured) - _apart(true)
+    largest, two_sigma, half, _ = volumetric(error)
+    return {"largest": np.abs(largest.value), "two_sigma": two_sigma.value, "half_range": half.value}
+
+
+def _apart(ends: F64) -> F64:
+    """(..., 2, 3) → (...,)"""
+    apart: F64 = np.linalg.norm(ends[..., 1, :] - ends[..., 0, :], axis=-1)
+    return apart
 
 
 def _of_spheres(measured: F64, true: F64) -> dict[Figure, F64]:
     """(A, balls, touches, 3), (balls, touches, 3)"""
-    found, really = spheres(measured), spheres(true)
-    return {
-        "form": found.form_mm.max(axis=1),
-        "size": 2.0 * np.abs(found.radius_mm - really.radius_mm).max(axis=1),
-    }
+    diameter_mm = 2.0 * fit_sphere(true, "ball").radius_mm
+    size, form = (figure.value for figure in probing_of(fit_sphere(measured, "ball"), diameter_mm))
+    return {"form": form.max(axis=1), "size": np.abs(size).max(axis=1)}
 
 
 def set_up(arm: Arm, performance: Performance, mover: Mover, rng: np.random.Generator) -> list[SetUp]:
