@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
+from ulna.errors import UlnaInputError
 from ulna.files.models import fill
 from ulna.files.task import TaskFile
 from ulna.files.toml import read_toml
@@ -284,6 +285,57 @@ def test_a_ball_from_a_file(result: Path, tmp_path: Path) -> None:
     assert [value["name"] for value in found["values"]] == ["x", "y", "z", "diameter"]
     assert found["values"][3]["value"] == pytest.approx(24.0, abs=0.03)  # the probe's own 6 mm taken off
     assert found["values"][3]["k"] == pytest.approx(2.5758, abs=1e-4)
+
+
+def touched_plane(seed: int, count: int = 12) -> np.ndarray:
+    """(count, 7) encoder angles on a tilted plate of 200 mm square; its normal towards the base is (-2, -1, -2) / 3."""
+    truth = true_arm(SEVEN)
+    rng = np.random.default_rng(seed)
+    along = np.array([[1.0, -2.0, 0.0], [4.0, 2.0, -5.0]])
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    at_mm = 450.0 * np.array([2.0, 1.0, 2.0]) / 3.0 + rng.uniform(-100, 100, (count, 2)) @ along
+    return truth.touch(at_mm, seed, rng)
+
+
+def test_a_plane_its_normal_and_its_form(calibrated) -> None:
+    _, arm = calibrated
+    q_rad = touched_plane(1)
+    plane = assess(arm, task_of("plane", [0] * 12, q_rad), seed=1)
+    assert [value.unit for value in plane.values] == ["1", "1", "1", "mm"]
+    for value, really in zip(plane.values, (-2 / 3, -1 / 3, -2 / 3, 450.0), strict=True):
+        assert value.expanded is not None
+        assert abs(value.value - really) < 1.5 * value.expanded
+        assert value.monte_carlo is not None
+        assert value.monte_carlo.u == pytest.approx(value.u, rel=0.03)
+    # a normal has length 1: along itself it cannot err
+    normal = np.array([value.value for value in plane.values[:3]])
+    assert normal @ plane.covariance[:3, :3] @ normal < 1e-6 * np.trace(plane.covariance[:3, :3])
+    # a form is the larger the more it is disturbed: trials lie above the value, and first order does not know it
+    (form,) = assess(arm, task_of("flatness", [0] * 12, q_rad), seed=1).values
+    assert form.monte_carlo is not None
+    assert form.monte_carlo.y > form.value + 0.3 * (form.u or 0.0)
+    assert form.first_order_is_good is False
+
+
+def test_form_of_a_ball(calibrated) -> None:
+    _, arm = calibrated
+    truth, rng = true_arm(SEVEN), np.random.default_rng(8)
+    corners = np.concatenate([np.eye(3), -np.eye(3)])
+    q_rad = truth.touch(np.array([400.0, 200.0, 300.0]) + 15.0 * corners, 2, rng)
+    (form,) = assess(arm, task_of("sphericity", [0] * 6, q_rad), most_trials=0).values
+    away = np.linalg.norm(arm.tip(q_rad) - MEASURANDS["ball"].of(arm.tip(q_rad)[None])[0, :3], axis=1)
+    assert form.value == pytest.approx(np.ptp(away), abs=1e-9)
+
+
+def test_touches_on_a_line_say_no_plane(calibrated) -> None:
+    _, arm = calibrated
+    truth, rng = true_arm(SEVEN), np.random.default_rng(9)
+    line = np.array([400.0, 200.0, 300.0]) + np.outer(np.linspace(0, 100, 5), [1.0, 0.0, 0.0])
+    q_rad = truth.touch(line, 3, rng)
+    with pytest.raises(UlnaInputError, match="hardly say what is asked, a plane"):
+        first_order(arm, task_of("plane", [0] * 5, np.repeat(q_rad[:1], 5, axis=0) + 1e-9 * rng.random((5, 7))))
+    found = first_order(arm, task_of("plane", [0] * 5, q_rad))
+    assert np.sqrt(found.covariance.diagonal()[:3].max()) > 0.1  # about the line it may turn
 
 
 def test_wrong_tasks(result: Path, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ NOTHING_MM = 1e-3
 """A length of no more is none: its ends are nearer than the steps of its derivatives."""
 MOVES = {"mm": MOVES_MM, "1": 1e-5}
 """A lost direction matters that moves a value by more, by its unit."""
-LARGEST = 1000.0
+LARGEST = 100.0
 """Derivative of a value by a touch that is beyond all sense, mm per mm."""
 STEP_K = 0.01
 """Of temperature, for its derivative."""
