@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from docs_artefacts import artefact_table
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
@@ -156,6 +157,7 @@ def main() -> None:
     for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
+    (OUTPUT / "which-artefact.md").write_text(artefact_table(), encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():
         printed = example_output(example)
