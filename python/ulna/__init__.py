@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from ulna.uncertainty.asking import uncertainty, volume_uncertainty
     from ulna.uncertainty.assess import Assessment
     from ulna.uncertainty.volume import VolumeMap
+    from ulna.verification.verify import Verification, verify
 
 __all__ = [
     "Arm",
@@ -59,6 +60,7 @@ __all__ = [
     "Simulation",
     "Study",
     "UlnaInputError",
+    "Verification",
     "VolumeMap",
     "__version__",
     "batch",
@@ -70,6 +72,7 @@ __all__ = [
     "plan",
     "simulate",
     "uncertainty",
+    "verify",
     "volume_uncertainty",
 ]
 
@@ -96,6 +99,7 @@ _WHERE = {
     "Study": "study",
     "UlnaInputError": "errors",
     "VolumeMap": "uncertainty.volume",
+    "Verification": "verification.verify",
     "batch": "batch",
     "calibrate": "calibrate",
     "cross_validate": "cross_validate",
@@ -106,6 +110,7 @@ _WHERE = {
     "simulate": "simulate",
     "uncertainty": "uncertainty.asking",
     "volume_uncertainty": "uncertainty.asking",
+    "verify": "verification.verify",
 }
 
 

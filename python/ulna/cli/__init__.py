@@ -19,6 +19,7 @@ from ulna.cli.plan import plan
 from ulna.cli.reproduce import reproduce
 from ulna.cli.simulate import simulate
 from ulna.cli.uncertainty import uncertainty
+from ulna.cli.verify import verify
 
 app = typer.Typer(
     name="ulna",
@@ -61,6 +62,7 @@ app.command("cross-validate")(cross_validate)
 app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)
+app.command("verify")(verify)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
 app.add_typer(exporting, name="export")

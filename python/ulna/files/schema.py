@@ -15,10 +15,13 @@ from pydantic.json_schema import GenerateJsonSchema
 from ulna.files.arm import ArmFile
 from ulna.files.performance import PerformanceFile
 from ulna.files.plan import PlanFile
+from ulna.files.profile_tables import ProfileFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.files.simulation_tables import SimulationFile
 from ulna.files.study import StudyFile
 from ulna.files.task import TaskFile
+from ulna.files.verification import VerificationFile
+from ulna.files.verify_tables import VerifyFile
 from ulna.files.volume import VolumeFile
 
 MODELS: dict[str, type[BaseModel]] = {
@@ -29,6 +32,9 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-task-1": TaskFile,
     "ulna-volume-1": VolumeFile,
     "ulna-performance-1": PerformanceFile,
+    "ulna-profile-1": ProfileFile,
+    "ulna-verify-1": VerifyFile,
+    "ulna-verification-1": VerificationFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

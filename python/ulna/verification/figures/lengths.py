@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ulna.errors import UlnaInputError
+from ulna.files.verify_tables import Ends
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
 from ulna.verification.figures.figure import points_of
 
 F64 = NDArray[np.float64]
-
-Ends = Literal["seats", "balls", "faces", "opposite-faces"]
 
 FORMULAS: dict[str, str] = {
     "seats": "distance between the means of the touches in seats A and B",
