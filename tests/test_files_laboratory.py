@@ -25,7 +25,7 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "country of an address": ('country = "GB"', 'country = "Gb"', ("'customer.address.country'", "'Gb'", "'GB'")),
     "language": ('["en", "de"]', '["en", "DE"]', ("'languages.2'", "'DE'", "ISO 639-1", "did you mean 'de'")),
     "language twice": ('["en", "de"]', '["en", "en", "de"]', ("'languages'", "stands twice")),
-    "a language too few": ('["en", "de"]', '["en", "de", "fr"]', ("'laboratory.name'", "languages en, de", "en, de, fr")),
+    "a language too few": ('["en", "de"]', '["en", "de", "fr"]', ("'laboratory.name'", "en, de, expected", "fr")),
     "a language too many": ('de = "Kugelstab"', 'de = "K", fr = "B"', ("'equipment.1.name'", "en, de, fr")),
     "an unknown language": ('de = "Kugelstab"', 'qq = "K"', ("'equipment.1.name'", "'qq'", "ISO 639-1")),
     "no identifier": ('identifier = "EX-2026-0042"\n', "", ("'certificate.identifier' is missing",)),

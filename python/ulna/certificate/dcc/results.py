@@ -39,7 +39,7 @@ def parameters(sheet: Sheet, results: Element, result: Result, stated: StatedPar
     for key, rows in (("unsure-values", stated.unsure), ("held-values", stated.held), ("lost-values", stated.lost)):
         if rows:
             _values(sheet, data, key, rows, [row.value for row in rows])
-    _signs_and_balls(sheet, data, result)
+    _given(sheet, data, result)
 
 
 def _values(
@@ -49,15 +49,23 @@ def _values(
     real_list(sheet, quantity(sheet, data, sheet.own(key), ref), names, values, units)
 
 
-def _signs_and_balls(sheet: Sheet, data: Element, result: Result) -> None:
-    joints = result.arm.joints
-    names = [f"joint.{k}.sign" for k in range(1, len(joints) + 1)]
-    signs = [float(joint.sign) for joint in joints]
-    real_list(sheet, quantity(sheet, data, sheet.own("signs")), names, signs, ["1"] * len(joints))
-    balls = {name: probe.ball_mm for name, probe in result.arm.probes.items() if probe.ball_mm is not None}
-    if balls:
-        names = [f"probe.{name}.ball" for name in balls]
-        real_list(sheet, quantity(sheet, data, sheet.own("balls")), names, list(balls.values()), ["mm"] * len(balls))
+def _given(sheet: Sheet, data: Element, result: Result) -> None:
+    """What else is needed to compute a tip: signs of the encoders, balls, and masses where links bend under them."""
+    arm = result.arm
+    given: list[tuple[str, float, str]] = [
+        (f"joint.{k}.sign", joint.sign, "1") for k, joint in enumerate(arm.joints, 1)
+    ]
+    given += [(f"probe.{name}.ball", probe.ball_mm, "mm") for name, probe in arm.probes.items() if probe.ball_mm]
+    if "compliance" in arm.extras:
+        for k, joint in enumerate(arm.joints, 1):
+            given.append((f"joint.{k}.mass", joint.effects.mass_kg, "kg"))
+            given += [
+                (f"joint.{k}.centre.{axis}", value, "mm")
+                for axis, value in zip("xyz", joint.effects.centre_mm, strict=True)
+            ]
+        given += [(f"gravity.{axis}", value, "1") for axis, value in zip("xyz", arm.gravity, strict=True)]
+    names, values, units = zip(*given, strict=True)
+    real_list(sheet, quantity(sheet, data, sheet.own("given")), names, values, units)
 
 
 def fit(sheet: Sheet, results: Element, result: Result) -> None:

@@ -9,13 +9,14 @@ _FACTORS: dict[str, dict[str, int]] = {
     "rad/(N m)": {r"\radian": 1, r"\newton": -1, r"\metre": -1},
     "°C": {r"\degreecelsius": 1},
     "K": {r"\kelvin": 1},
+    "kg": {r"\kilogram": 1},
     "1": {},
 }
-_ORDER = (r"\milli\metre", r"\radian", r"\kelvin", r"\newton", r"\metre", r"\degreecelsius")
+_ORDER = (r"\milli\metre", r"\radian", r"\kelvin", r"\newton", r"\metre", r"\degreecelsius", r"\kilogram")
 
 
 def dsi_unit(unit: str) -> str:
-    r"""`mm`, `rad`, `1/K`, `rad/(N m)`, `°C`, `K` or `1` as D-SI has it: prefix, unit, exponent."""
+    r"""`mm`, `rad`, `1/K`, `rad/(N m)`, `°C`, `K`, `kg` or `1` as D-SI has it: prefix, unit, exponent."""
     return _written(_FACTORS[unit])
 
 

@@ -60,8 +60,11 @@ RESULTS: dict[str, tuple[str, str, str]] = {
     ),
     "held-values": ("Held parameters", "Festgehaltene Parameter", "固定参数"),
     "lost-values": ("Parameters that are not determined", "Nicht bestimmte Parameter", "未能确定的参数"),
-    "signs": ("Signs of the encoders", "Vorzeichen der Winkelgeber", "编码器符号"),
-    "balls": ("Diameters of the styli's balls", "Durchmesser der Tastkugeln", "测球直径"),
+    "given": (
+        "Taken as given: signs of the encoders, balls, masses",
+        "Als gegeben genommen: Vorzeichen der Winkelgeber, Tastkugeln, Massen",
+        "视为已知：编码器符号、测球、质量",
+    ),
     "fit": ("Fit", "Ausgleichung", "拟合"),
     "readings": ("Readings", "Ablesungen", "读数个数"),
     "freedom": ("Degrees of freedom", "Freiheitsgrade", "自由度"),
