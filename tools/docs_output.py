@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 from docs_errors import error_page
@@ -76,10 +77,10 @@ def first_lines(text: str, lines: int) -> str:
 
 def certificate_excerpt(text: str) -> str:
     """The list of fitted parameters, up to the second column of its covariance; long lists are cut short."""
-    begin = text.index('          <dcc:quantity refType="basic_measuredValue">')
-    columns = [match.start() for match in re.finditer("<si:columnXMLList>", text)]
-    lines = text[begin : columns[1]].rstrip().splitlines()
-    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).*?(?=</)", r"\1…", line)[10:] for line in lines) + "\n…\n"
+    begin = text.rindex("\n", 0, text.index('<dcc:quantity refType="basic_measuredValue">')) + 1
+    second = [match.start() for match in re.finditer("<si:columnXMLList>", text)][1]
+    lines = textwrap.dedent(text[begin:second].rstrip()).splitlines()
+    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).*?(?=</)", r"\1…", line) for line in lines) + "\n…\n"
 
 
 def command_outputs(pictures: bool = False) -> dict[str, str]:

@@ -24,6 +24,8 @@ def certificate_report(held: Mapping[str, Any]) -> list[RenderableType]:
     lines.append(f" {of['held']} held, {of['not_determined']} not determined: said so, without U")
     if of["without_uncertainty"]:
         lines.append(f" {of['without_uncertainty']} fitted without degrees of freedom: said so, without U")
+    for tests in held["tests"]:
+        lines.append(f" {len(tests['values'])} test values, {tests['title']}: {tests['conformity'] or 'no limits'}")
     if held["missing"]:
         lines.append("The laboratory file says nothing of:")
         lines += [f" {_MISSING[key]}" for key in held["missing"]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,9 @@ from ulna.certificate.dcc.conditions import (
 )
 from ulna.certificate.dcc.sheet import DCC, NAMES, Element, Sheet
 from ulna.certificate.dcc.statements import statements
+from ulna.certificate.dcc.tested import conformity_statements, tests_result
 from ulna.certificate.stated import StatedParameters, stated_parameters
+from ulna.certificate.tested import StatedTests
 from ulna.errors import UlnaInputError
 from ulna.files.laboratory import Laboratory, load_laboratory
 from ulna.files.laboratory_tables import LaboratoryFile
@@ -38,8 +41,9 @@ class Certificate:
     identifier: str
     """As the laboratory file has it."""
     stated: StatedParameters
+    tested: list[StatedTests]
     missing: list[str]
-    """What the laboratory file could have said and did not, and the certificate says so."""
+    """What the laboratory file could have said and did not."""
 
     def as_dict(self) -> dict[str, Any]:
         """What it holds, in numbers: JSON types only."""
@@ -58,12 +62,24 @@ class Certificate:
                 "k_region": stated.k_region,
                 "p": stated.p,
             },
+            "tests": [
+                {
+                    "title": tests.title,
+                    "conformity": tests.conformity,
+                    "values": {value.name: value.conformity for value in tests.values},
+                }
+                for tests in self.tested
+            ],
             "missing": self.missing,
         }
 
 
-def dcc_certificate(result: str | Path, laboratory: str | Path) -> Certificate:
+def dcc_certificate(
+    result: str | Path, laboratory: str | Path, tested: Sequence[StatedTests] = (), tested_in: str = ""
+) -> Certificate:
     """A DCC 3.3.0 of a result.json (or its folder) and a laboratory file. It is an unsigned draft.
+
+    tested: tests of the same arm; tested_in: the file that they stand in.
 
     Raises UlnaInputError, also for a calibration that did not converge and for texts that XML cannot hold.
     """
@@ -84,11 +100,15 @@ def dcc_certificate(result: str | Path, laboratory: str | Path) -> Certificate:
     of_laboratory, of_result = Sheet(languages, str(known.path)), Sheet(languages, str(path))
     data = administrative_data(of_laboratory, root, known)
     statements(of_result, of_result.dcc(data, "statements"), known, found, stated)
+    of_tests = Sheet(languages, tested_in)
+    conformity_statements(of_tests, data[-1], tested)
     measured = of_result.dcc(root, "measurementResults")
     _calibration(of_result, of_laboratory, measured, found, stated, known, sha256(read_bytes(path, "a result.json")))
+    for tests in tested:
+        tests_result(of_tests, of_laboratory, measured, tests, known.file)
     etree.indent(root)
     content = bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8")) + b"\n"
-    return Certificate(content, known.file.certificate.identifier, stated, _missing(known.file))
+    return Certificate(content, known.file.certificate.identifier, stated, list(tested), _missing(known.file))
 
 
 def _calibration(

@@ -7,6 +7,7 @@ are English in all.
 from __future__ import annotations
 
 from ulna.certificate.dcc.words_results import RESULTS
+from ulna.certificate.dcc.words_tests import TESTS
 
 OWN_LANGUAGES = ("en", "de", "zh")
 
@@ -121,12 +122,15 @@ _ADMINISTRATIVE: dict[str, tuple[str, str, str]] = {
 }
 
 
+_ALL = {**_ADMINISTRATIVE, **RESULTS, **TESTS}
+
+
 def words(key: str, language: str, **values: object) -> str:
     """One of Ulna's own texts in one of `OWN_LANGUAGES`, its fields filled."""
-    entry = _ADMINISTRATIVE.get(key) or RESULTS[key]
+    entry = entries()[key]
     return entry[OWN_LANGUAGES.index(language)].format(**values)
 
 
 def entries() -> dict[str, tuple[str, str, str]]:
     """All texts."""
-    return {**_ADMINISTRATIVE, **RESULTS}
+    return _ALL
