@@ -30,7 +30,7 @@ WORDS = [
 VALUES = [replace(PASS, name=name, value=value, decision=said) for name, value, said, _ in WORDS]  # type: ignore[arg-type]
 
 
-def tests_of(*values: StatedTest) -> StatedTests:
+def stated_of(*values: StatedTest) -> StatedTests:
     return StatedTests("Acceptance test, as left", "ISO 10360-12:2016", RULE, "0.1.0", values)
 
 
@@ -42,7 +42,7 @@ def certificate(*tested: StatedTests) -> bytes:
 def test_every_word_on_conformity(name: str, value: float, decision: str, word: str) -> None:
     test = next(each for each in VALUES if each.name == name)
     assert test.conformity == word
-    read = reading.named(certificate(tests_of(test)), name)
+    read = reading.named(certificate(stated_of(test)), name)
     assert (read.values, read.units, read.conformity) == ([value], ["\\milli\\metre"], word)
     assert (read.expanded, read.k, read.p, read.places) == ([0.004], 2.0, 0.95, [-4])
     assert RULE in read.declared
@@ -77,7 +77,7 @@ def test_the_whole_is_as_good_as_its_worst(names: list[str], word: str | None) -
     known = {test.name: test for test in VALUES}
     known["unknown"] = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
     known["free"] = replace(PASS, name="free", limit=None, guard=None, decision=None)
-    tests = tests_of(*(known[name] for name in names))
+    tests = stated_of(*(known[name] for name in names))
     assert tests.conformity == word
     content = certificate(tests)
     found = reading.tree(content).findall(
@@ -91,7 +91,7 @@ def test_the_whole_is_as_good_as_its_worst(names: list[str], word: str | None) -
 def test_what_cannot_be_decided_says_so() -> None:
     unknown = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
     free = replace(PASS, name="free", limit=None, guard=None, decision=None)
-    content = certificate(tests_of(unknown, free))
+    content = certificate(stated_of(unknown, free))
     read = reading.named(content, "unknown")
     assert (read.conformity, read.expanded) == (None, [])
     root = reading.tree(content)
@@ -109,13 +109,13 @@ def test_it_is_valid(shared_data: Path) -> None:
         pytest.skip(f"PTB's schema is not at hand: {folder} is not there")
     unknown = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
     free = replace(PASS, name="<free> & easy", limit=None, guard=None, decision=None)
-    content = certificate(tests_of(*VALUES, unknown, free), replace(tests_of(free), title="<b>As found</b>"))
+    content = certificate(stated_of(*VALUES, unknown, free), replace(stated_of(free), title="<b>As found</b>"))
     schema = reading.schema(folder)
     assert schema.validate(etree.fromstring(content)), schema.error_log
 
 
 def test_ptbs_schematron_finds_no_error() -> None:
     schematron = pytest.importorskip("dcclib.validation.schematron", reason="dcclib is an extra: ulna[dcc]")
-    found = schematron.SchematronValidator.for_dcc().validate_str(certificate(tests_of(*VALUES)).decode())
+    found = schematron.SchematronValidator.for_dcc().validate_str(certificate(stated_of(*VALUES)).decode())
     reports = [*found.failed_assertions, *found.successful_reports]
     assert [report.text for report in reports if report.role == "error"] == []
