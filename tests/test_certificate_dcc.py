@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import functools
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -12,133 +12,29 @@ import numpy as np
 import pytest
 import scipy.stats
 from tests import dcc_reading as reading
+from tests.certificates import (
+    EVERY_KEY,
+    EXAMPLE,
+    LABORATORIES,
+    MINIMAL,
+    NASTY,
+    PROBE,
+    RESULT,
+    RESULTS,
+    beyond_geometry,
+    document,
+    make,
+    nasty,
+    without_freedom,
+    without_noise,
+)
 
 from ulna.certificate.dcc.document import dcc_certificate
-from ulna.errors import UlnaInputError
-
-HERE = Path(__file__).resolve().parent
-FOSSILS = HERE / "data" / "fossils"
-RESULT = FOSSILS / "result-1.json"
-EXAMPLE = HERE.parent / "examples" / "platinum" / "laboratory.toml"
-EVERY_KEY = FOSSILS / "lab-1.toml"
-
-MINIMAL = """format = "ulna-lab/1"
-languages = ["en"]
-[certificate]
-identifier = "1"
-country = "DE"
-begin = 2026-01-01
-end = 2026-01-01
-location = "other"
-[laboratory]
-name = "L"
-address = { country = "DE", city = "B" }
-[[person]]
-name = "P"
-role = "R"
-main_signer = true
-[customer]
-name = "C"
-address = { country = "DE", city = "B" }
-[item]
-name = "Arm"
-manufacturer = "M"
-model = "T"
-serial = "1"
-[environment]
-temperature = { low = 19, high = 21, unit = "°C" }
-"""
-
-#: what a probe may be called: fewer characters than elsewhere
-PROBE = "<script>'&' \u202eمرحبا\u202c {x} %20"
-NASTY = "<script>alert(\"1\")</script> & ]]> 'x' \u202eمرحبا\u202c {braces} %20"
-
-
-def document() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(RESULT.read_text(encoding="utf-8"))
-    return found
-
-
-def without_noise(result: dict[str, Any]) -> None:
-    result["provenance"]["noise"] = None
-
-
-def without_freedom(result: dict[str, Any]) -> None:
-    without_noise(result)
-    result["fit"]["degrees_of_freedom"] = 0
-    for row in result["parameters"]:
-        row["u"] = None
-    size = len(result["covariance"]["names"])
-    result["covariance"]["matrix"] = [[None] * size] * size
-
-
-def beyond_geometry(result: dict[str, Any]) -> None:
-    """Expansions and compliances as if they had been fitted: the other units."""
-    result["arm"]["joint"][0]["expansion"] = 1.1e-5
-    result["arm"]["joint"][1] |= {"compliance": 2e-6, "mass": 4.5, "centre": [1.0, -2.0, 30.0]}
-    size = len(result["covariance"]["names"])
-    for name, unit, u in (("joint.1.expansion", "1/K", 2e-6), ("joint.2.compliance", "rad/(N m)", 1e-7)):
-        result["parameters"].append(
-            {"name": name, "unit": unit, "start": 0.0, "value": 1e-5, "u": u, "status": "fitted"}
-        )
-        result["covariance"]["names"].append(name)
-        for row in result["covariance"]["matrix"]:
-            row.append(0.0)
-        size += 1
-        result["covariance"]["matrix"].append([0.0] * (size - 1) + [u * u])
-
-
-def nasty(result: dict[str, Any]) -> None:
-    """Names that a study may have, in every place where names stand."""
-    result["arm"]["name"] = NASTY
-    text = json.dumps(result).replace("probe.bent.", json.dumps("probe." + PROBE + ".")[1:-1])
-    result.update(json.loads(text))
-    result["arm"]["probe"] = {PROBE if name == "bent" else name: tip for name, tip in result["arm"]["probe"].items()}
-    result["provenance"]["files"][0]["path"] = f"folder/{NASTY.replace('/', '')}.toml"
-    result["outliers"] = [
-        {
-            "row": 3,
-            "file": NASTY,
-            "artefact": NASTY,
-            "placement": NASTY,
-            "probe": NASTY,
-            "norm_mm": 0.25,
-            "times_scatter": 7.5,
-        }
-    ]
-
-
-RESULTS: dict[str, Callable[[dict[str, Any]], None]] = {
-    "as it is": lambda result: None,
-    "without noise": without_noise,
-    "without freedom": without_freedom,
-    "beyond geometry": beyond_geometry,
-    "nasty names": nasty,
-}
-LABORATORIES: dict[str, Callable[[], str]] = {
-    "minimal": lambda: MINIMAL,
-    "the example": lambda: EXAMPLE.read_text(encoding="utf-8"),
-    "German alone": lambda: MINIMAL.replace('["en"]', '["de"]'),
-    "French": lambda: MINIMAL.replace('["en"]', '["fr"]'),
-    "French and English": lambda: MINIMAL.replace('["en"]', '["fr", "en"]'),
-    "nasty": lambda: MINIMAL.replace('name = "Arm"', f"name = '''{NASTY}'''").replace(
-        'serial = "1"', f"serial = '''{NASTY}'''\ndescription = '''{NASTY}\nsecond line'''"
-    ),
-}
 
 
 @pytest.fixture
 def made(tmp_path: Path) -> Callable[..., bytes]:
-    """The certificate of a changed fossil and a laboratory file's text."""
-
-    def make(change: Callable[[dict[str, Any]], None] = RESULTS["as it is"], laboratory: str = MINIMAL) -> bytes:
-        result = document()
-        change(result)
-        (tmp_path / "result.json").write_text(json.dumps(result), encoding="utf-8")
-        (tmp_path / "lab.toml").write_text(laboratory, encoding="utf-8")
-        return dcc_certificate(tmp_path / "result.json", tmp_path / "lab.toml").content
-
-    return make
+    return functools.partial(make, tmp_path)
 
 
 CASES = [(result, "minimal") for result in RESULTS] + [("as it is", laboratory) for laboratory in LABORATORIES]
@@ -357,25 +253,6 @@ def test_texts_are_text_and_nothing_else(made: Callable[..., bytes]) -> None:
     labels = reading.named(content, "Fitted parameters").labels
     assert f"probe.{PROBE}.x" in labels
     assert any(NASTY in (text or "") and "row 3" in text for text in root.itertext())
-
-
-def test_what_xml_cannot_hold_is_told(tmp_path: Path) -> None:
-    result = document()
-    nasty(result)
-    result["outliers"][0]["placement"] = "on the\x01table"
-    path, laboratory = tmp_path / "result.json", tmp_path / "lab.toml"
-    path.write_text(json.dumps(result))
-    laboratory.write_text(MINIMAL, encoding="utf-8")
-    with pytest.raises(UlnaInputError, match=r"result\.json: the text .* control character U\+0001, which no XML"):
-        dcc_certificate(path, laboratory)
-
-
-def test_a_fit_that_did_not_converge_is_not_certified(made: Callable[..., bytes]) -> None:
-    def fail(result: dict[str, Any]) -> None:
-        result["fit"] |= {"converged": False, "termination": "max-iterations"}
-
-    with pytest.raises(UlnaInputError, match=r"'fit.converged'.*did not converge \(max-iterations\).*Calibrate again"):
-        made(fail)
 
 
 def test_the_same_files_give_the_same_bytes(made: Callable[..., bytes]) -> None:

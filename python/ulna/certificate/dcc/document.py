@@ -20,12 +20,11 @@ from ulna.certificate.dcc.conditions import (
 from ulna.certificate.dcc.sheet import DCC, NAMES, Element, Sheet
 from ulna.certificate.dcc.statements import statements
 from ulna.certificate.dcc.tested import conformity_statements, tests_result
-from ulna.certificate.stated import StatedParameters, stated_parameters
+from ulna.certificate.source import certified_result
+from ulna.certificate.stated import StatedParameters
 from ulna.certificate.tested import StatedTests
-from ulna.errors import UlnaInputError
 from ulna.files.laboratory import Laboratory, load_laboratory
 from ulna.files.laboratory_tables import LaboratoryFile
-from ulna.files.toml import read_bytes, sha256
 from ulna.result import Result
 
 VERSION = "3.3.0"
@@ -86,13 +85,7 @@ def dcc_certificate(
     path = Path(result)
     path = path / "result.json" if path.is_dir() else path
     known = load_laboratory(laboratory)
-    found = Result.load(path)
-    if not found.fit.converged:
-        raise UlnaInputError(
-            f"{path}: key 'fit.converged': the calibration did not converge ({found.fit.termination}); expected one "
-            "that did. Calibrate again before you certify it."
-        )
-    stated = stated_parameters(found)
+    found, stated, result_sha256 = certified_result(path)
     languages = tuple(known.file.languages)
     root: Element = etree.Element(f"{{{DCC}}}digitalCalibrationCertificate", nsmap={**NAMES, "xsi": _XSI})
     root.set("schemaVersion", VERSION)
@@ -103,7 +96,7 @@ def dcc_certificate(
     of_tests = Sheet(languages, tested_in)
     conformity_statements(of_tests, data[-1], tested)
     measured = of_result.dcc(root, "measurementResults")
-    _calibration(of_result, of_laboratory, measured, found, stated, known, sha256(read_bytes(path, "a result.json")))
+    _calibration(of_result, of_laboratory, measured, found, stated, known, result_sha256)
     for tests in tested:
         tests_result(of_tests, of_laboratory, measured, tests, known.file)
     etree.indent(root)
