@@ -23,6 +23,12 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "format": ('"ulna-lab/1"', '"ulna-study/1"', ("another kind of file", "ulna-lab/1")),
     "country": ('country = "DE"\nbegin', 'country = "UK"\nbegin', ("'certificate.country'", "'UK'", "'GB'")),
     "country of an address": ('country = "GB"', 'country = "Gb"', ("'customer.address.country'", "'Gb'", "'GB'")),
+    "a list as a country": (
+        'country = "DE"\nbegin',
+        'country = ["DE"]\nbegin',
+        ("'certificate.country'", "ISO 3166-1"),
+    ),
+    "a list as a language": ('["en", "de"]', '["en", ["de"]]', ("'languages.2'", "ISO 639-1")),
     "language": ('["en", "de"]', '["en", "DE"]', ("'languages.2'", "'DE'", "ISO 639-1", "did you mean 'de'")),
     "language twice": ('["en", "de"]', '["en", "en", "de"]', ("'languages'", "stands twice")),
     "a language too few": ('["en", "de"]', '["en", "de", "fr"]', ("'laboratory.name'", "en, de, expected", "fr")),
@@ -47,8 +53,16 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no signer": ("main_signer = true", "main_signer = false", ("'person'", "0 persons", "exactly one")),
     "two signers": ('role = "Operator"', 'role = "O"\nmain_signer = true', ("'person'", "2 persons", "exactly one")),
     "one bracket": ("[[equipment]]", "[equipment]", ("'equipment'", "two brackets")),
-    "web": ('"https://laboratory.example/lengths"', '"laboratory.example"', ("'laboratory.web'", "https://")),
-    "script": ('"https://laboratory.example/lengths"', '"javascript:alert(1)"', ("'laboratory.web'", "https://")),
+    "web": (
+        '"https://laboratory.example/lengths"',
+        '"laboratory.example"',
+        ("'laboratory.web'", "an address such as https://"),
+    ),
+    "script": (
+        '"https://laboratory.example/lengths"',
+        '"javascript:alert(1)"',
+        ("'laboratory.web'", "an address such as https://"),
+    ),
     "no unit": (', unit = "°C"', "", ("'environment.temperature.unit' is missing",)),
     "unit": ('unit = "°C"', 'unit = "°F"', ("'environment.temperature.unit'", "'°F'", "'°C' or 'K'")),
     "value without u": ("u = 0.2, ", "", ("'environment.temperature'", "has value", "value and u")),
@@ -134,6 +148,31 @@ def test_the_template_filled_in_loads_and_has_every_key(tmp_path: Path) -> None:
     assert file.laboratory.model_fields_set == set(type(file.laboratory).model_fields)
     assert file.item.model_fields_set == set(type(file.item).model_fields)
     assert file.certificate.model_fields_set == set(type(file.certificate).model_fields)
+
+
+@pytest.mark.parametrize(
+    ("link", "good"),
+    [
+        ("https://a.example", True),
+        ("http://a.example:8080/ü/x%20y?q=1&r=/?#part", True),
+        ("https://a%zz", False),
+        ("https://a.example/%4", False),
+        ("https://a.example/x y", False),
+        ("http://[::1", False),
+        ("https://a#b#c", False),
+        ("https://a:b:c", False),
+        ("ftp://a.example", False),
+        ("https://", False),
+    ],
+)
+def test_links(link: str, good: bool, tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8").replace("https://laboratory.example/lengths", link)
+    (tmp_path / "lab.toml").write_text(text, encoding="utf-8")
+    if good:
+        assert load_laboratory(tmp_path / "lab.toml").file.laboratory.web == link
+    else:
+        with pytest.raises(UlnaInputError, match=r"'laboratory\.web'.*expected an address such as https://"):
+            load_laboratory(tmp_path / "lab.toml")
 
 
 def test_codes() -> None:

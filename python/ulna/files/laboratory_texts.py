@@ -17,6 +17,12 @@ from ulna.files.iso_codes import COUNTRIES, LANGUAGES, SLIPS
 #: what XML 1.0 cannot hold, §2.2 "Characters": controls but tab and line ends, halves of surrogate pairs, two codes
 _NO_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
+#: a character of an address as it may stand (RFC 3987 without what it reserves), or two digits behind a %
+_IN_LINK = r"(?:[^\s\x00-\x20<>\"{}|\\^`\[\]#?%/:@]|%[0-9A-Fa-f]{2})"
+_LINK = re.compile(
+    rf"https?://{_IN_LINK}+(:[0-9]{{1,5}})?(/(?:{_IN_LINK}|[/:@])*)?(\?(?:{_IN_LINK}|[/?:@])*)?(#(?:{_IN_LINK}|[/?:@])*)?"
+)
+
 
 def unwritable(text: str) -> str | None:
     """The first character that no XML file can hold, as `U+0007`; None where there is none."""
@@ -70,7 +76,7 @@ def _date(value: Any) -> Any:
 
 
 def _country(value: Any) -> Any:
-    if value not in COUNTRIES:
+    if not isinstance(value, str) or value not in COUNTRIES:
         near = SLIPS.get(value, value.upper()) if isinstance(value, str) else ""
         hint = f" (did you mean '{near}'?)" if near in COUNTRIES else ""
         raise PydanticCustomError(
@@ -80,7 +86,7 @@ def _country(value: Any) -> Any:
 
 
 def _language(value: Any) -> Any:
-    if value not in LANGUAGES:
+    if not isinstance(value, str) or value not in LANGUAGES:
         near = value.lower() if isinstance(value, str) else ""
         hint = f" (did you mean '{near}'?)" if near in LANGUAGES else ""
         raise PydanticCustomError(
@@ -90,8 +96,8 @@ def _language(value: Any) -> Any:
 
 
 def _link(value: Any) -> Any:
-    if not isinstance(value, str) or re.fullmatch(r"https?://[^\s<>\"{}|\\^`\x00-\x20]+", value) is None:
-        raise PydanticCustomError("link", "an address that begins with https:// or http://, without blanks")
+    if not isinstance(value, str) or _LINK.fullmatch(value) is None:
+        raise PydanticCustomError("link", "an address such as https://laboratory.example/page")
     return value
 
 
