@@ -69,12 +69,14 @@ def _certified(sheet: Sheet, certificate: str, issuer: str | None) -> Said:
     return sheet.own("certified-by", certificate=certificate, issuer=issuer)
 
 
-def influence_conditions(sheet: Sheet, parent: Element, environment: EnvironmentTable) -> None:
+def influence_conditions(
+    sheet: Sheet, parent: Element, environment: EnvironmentTable, status: str | None = None
+) -> None:
     """`dcc:influenceConditions`: how warm and damp it was."""
     element = sheet.dcc(parent, "influenceConditions")
-    _condition(sheet, element, environment.temperature, "temperature", environment.temperature.unit, 1.0)
+    _condition(sheet, element, environment.temperature, "temperature", environment.temperature.unit, 1.0, status)
     if environment.humidity is not None:
-        _condition(sheet, element, environment.humidity, "humidity", "1", 100.0)
+        _condition(sheet, element, environment.humidity, "humidity", "1", 100.0, status)
     for key, text in (
         ("humidity", sheet.own("humidity-missing") if environment.humidity is None else None),
         ("environment", None if environment.remark is None else sheet.theirs(environment.remark)),
@@ -92,10 +94,13 @@ def _condition(
     key: str,
     unit: str,
     divisor: float,
+    status: str | None,
 ) -> None:
     ref = {"temperature": "basic_temperature", "humidity": "basic_humidityRelative"}[key]
     element = sheet.dcc(parent, "influenceCondition", ref=ref)
     sheet.text(element, "name", sheet.own(key))
+    if status is not None:
+        sheet.dcc(element, "status", status)
     data = sheet.dcc(element, "data")
     if condition.value is not None and condition.u is not None:
         one = quantity(sheet, data, sheet.own(key), ref)
@@ -119,7 +124,7 @@ def input_files(sheet: Sheet, parent: Element, result: Result, result_sha256: st
         sheet.text(content, "text", sheet.theirs(f"{name}, SHA-256 {sha256}"))
 
 
-def laboratory_conditions(sheet: Sheet, parent: Element, file: LaboratoryFile) -> None:
-    """Standards and environment, in the order that the schema wants."""
+def laboratory_conditions(sheet: Sheet, parent: Element, file: LaboratoryFile, status: str | None = None) -> None:
+    """Standards and environment, in the order that the schema wants; status: `beforeAdjustment` and the like."""
     equipment(sheet, parent, file.equipment)
-    influence_conditions(sheet, parent, file.environment)
+    influence_conditions(sheet, parent, file.environment, status)
