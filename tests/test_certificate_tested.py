@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 RESULT = HERE / "data" / "fossils" / "result-1.json"
 LABORATORY = HERE.parent / "examples" / "platinum" / "laboratory.toml"
 
-RULE = "ISO 14253-1:2017, g = 1.65 u."
+RULE = "g = 1.65 u (95 %)"
 PASS = StatedTest("P_Size", "probing", "D_fit - D_cal", -0.010, "mm", 0.004, 2.0, 0.95, 0.020, 0.0033, "pass")
 #: name, |value| against a limit of 0.020 mm and a guard band of 0.0033 mm, decision, word
 WORDS = [
@@ -31,11 +31,21 @@ VALUES = [replace(PASS, name=name, value=value, decision=said) for name, value, 
 
 
 def stated_of(*values: StatedTest) -> StatedTests:
-    return StatedTests("Acceptance test, as left", "as-left", "ISO 10360-12:2016", RULE, "0.1.0", values)
+    return StatedTests(
+        "iso",
+        "as-left",
+        "ISO 10360-12:2016",
+        "From secondary sources.",
+        "1.65u",
+        2.0,
+        "0.1.0",
+        values,
+        files=[("v.json", "0")],
+    )
 
 
 def certificate(*tested: StatedTests) -> bytes:
-    return dcc_certificate(RESULT, LABORATORY, tested, "verification.json").content
+    return dcc_certificate(RESULT, LABORATORY, tested=tested).content
 
 
 @pytest.mark.parametrize(("name", "value", "decision", "word"), WORDS)
@@ -142,7 +152,7 @@ def test_it_is_valid(shared_data: Path) -> None:
         pytest.skip(f"PTB's schema is not at hand: {folder} is not there")
     unknown = replace(PASS, name="unknown", expanded=None, guard=None, decision=None)
     free = replace(PASS, name="<free> & easy", limit=None, guard=None, decision=None)
-    found = replace(stated_of(free, FULL), title="<b>As found</b>", state="as-found", departures=["a", "b"])
+    found = replace(stated_of(free, FULL), profile="<b>As found</b>", state="as-found", departures=["a", "b"])
     content = certificate(stated_of(*VALUES, unknown, free), found)
     schema = reading.schema(folder)
     assert schema.validate(etree.fromstring(content)), schema.error_log

@@ -21,6 +21,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+State = Literal["as-found", "as-left"]
+Rule = Literal["1.65u", "U", "simple"]
 Decision = Literal["pass", "fail", "undecided"]
 Conformity = Literal["pass", "conditionalPass", "conditionalFail", "fail", "noPass"]
 
@@ -81,22 +83,46 @@ class StatedTest:
 
 
 @dataclass(frozen=True)
+class Temperature:
+    """Of the artefacts while they were measured."""
+
+    value_c: float
+    u_k: float
+
+
+@dataclass(frozen=True)
 class StatedTests:
     """All figures of the arm in one state."""
 
-    title: str
-    """The profile and the state."""
-    state: str
-    """"as-found" or "as-left"."""
+    profile: str
+    """Name of the list of what is measured."""
+    state: State
     manner: str
     """In the manner of which standard."""
-    rule: str
-    """The decision rule in words."""
+    statement: str
+    """What the profile says of that."""
+    rule: Rule
+    """The guard band of the decision rule."""
+    k: float
+    """Of the rule "U"."""
     version: str
     """Of the Ulna that computed the values."""
     values: Sequence[StatedTest]
     departures: Sequence[str] = ()
     """Where what was measured is not what the profile counts."""
+    temperature: Temperature | None = None
+    files: Sequence[tuple[str, str]] = ()
+    """path and SHA-256 of what the figures come from."""
+
+    @property
+    def source(self) -> str:
+        """The file that the figures stand in."""
+        return self.files[0][0] if self.files else "tests in memory"
+
+    @property
+    def title(self) -> str:
+        """In English: `iso-10360-12, as left`."""
+        return f"{self.profile}, {self.state.replace('-', ' ')}"
 
     @property
     def conformity(self) -> Conformity | None:

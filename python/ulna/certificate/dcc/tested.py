@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ulna.certificate.dcc.administrative import software
-from ulna.certificate.dcc.conditions import laboratory_conditions
-from ulna.certificate.dcc.quantities import Expanded, quantity, real, real_list
+from ulna.certificate.dcc.conditions import input_files, laboratory_conditions
+from ulna.certificate.dcc.quantities import Expanded, quantity, real, real_list, standard_real
 from ulna.certificate.dcc.results import result_of
 from ulna.certificate.dcc.sheet import Element, Said, Sheet
 from ulna.certificate.dcc.statements import statement
-from ulna.certificate.tested import StatedTest, StatedTests
+from ulna.certificate.tested import StatedTest, StatedTests, Temperature
 from ulna.files.laboratory_tables import LaboratoryFile
 
 #: of the conditions, as DCC calls the state of the arm
-_STATUS = {"as-found": "beforeAdjustment", "as-left": "afterAdjustment"}
+_STATUS: dict[str, str] = {"as-found": "beforeAdjustment", "as-left": "afterAdjustment"}
 
 
 def tests_result(
@@ -22,29 +20,50 @@ def tests_result(
 ) -> None:
     """A dcc:measurementResult of the arm in one state, with a dcc:result for each test."""
     element = sheet.dcc(measured, "measurementResult")
-    sheet.text(element, "name", sheet.theirs(tests.title))
+    sheet.text(element, "name", _title(sheet, tests))
     method = sheet.dcc(sheet.dcc(element, "usedMethods"), "usedMethod")
     sheet.text(method, "name", sheet.own("test-method", manner=tests.manner))
     sheet.text(method, "description", sheet.own("test-method-text"))
     sheet.dcc(method, "reference", f"evaluated in the manner of {tests.manner}")
     software(sheet, sheet.dcc(element, "usedSoftware"), tests.version)
-    laboratory_conditions(of_laboratory, element, file, _STATUS.get(tests.state))
+    status = _STATUS[tests.state]
+    conditions = laboratory_conditions(of_laboratory, element, file, status)
+    if tests.temperature is not None:
+        _temperature(sheet, conditions, tests.temperature, status)
     results = sheet.dcc(element, "results")
     for name in dict.fromkeys(value.test for value in tests.values):
         data = result_of(sheet, results, sheet.theirs(name))
         for value in tests.values:
             if value.test == name:
-                _value(sheet, data, value, tests.rule)
+                _value(sheet, data, value, _rule(sheet, tests))
                 _singles(sheet, data, value)
+    metas = sheet.dcc(element, "measurementMetaData")
     if tests.departures:
-        meta = sheet.dcc(sheet.dcc(element, "measurementMetaData"), "metaData")
+        meta = sheet.dcc(metas, "metaData")
         sheet.text(meta, "name", sheet.own("departures"))
         data = sheet.dcc(meta, "data")
         for departure in tests.departures:
             sheet.text(data, "text", sheet.theirs(departure))
+    input_files(sheet, metas, tests.files)
 
 
-def _value(sheet: Sheet, data: Element, value: StatedTest, rule: str) -> None:
+def _title(sheet: Sheet, tests: StatedTests) -> Said:
+    return sheet.own(f"title-{tests.state}", profile=tests.profile)
+
+
+def _rule(sheet: Sheet, tests: StatedTests) -> Said:
+    return sheet.own("rule", guard=sheet.own(f"guard-{tests.rule}", k=f"{tests.k:g}"))
+
+
+def _temperature(sheet: Sheet, conditions: Element, temperature: Temperature, status: str) -> None:
+    condition = sheet.dcc(conditions, "influenceCondition")
+    sheet.text(condition, "name", sheet.own("artefact-temperature"))
+    sheet.dcc(condition, "status", status)
+    one = quantity(sheet, sheet.dcc(condition, "data"), sheet.own("artefact-temperature"))
+    standard_real(sheet, one, temperature.value_c, "°C", temperature.u_k)
+
+
+def _value(sheet: Sheet, data: Element, value: StatedTest, rule: Said) -> None:
     one = quantity(sheet, data, sheet.theirs(value.name), "basic_measuredValue", sheet.theirs(value.formula))
     expanded = None if value.expanded is None else (value.expanded, value.k, value.p)
     real(sheet, one, value.value, value.unit, expanded)
@@ -62,7 +81,7 @@ def _value(sheet: Sheet, data: Element, value: StatedTest, rule: str) -> None:
     _budget(sheet, metas, value)
 
 
-def _declared(sheet: Sheet, value: StatedTest, rule: str) -> Said:
+def _declared(sheet: Sheet, value: StatedTest, rule: Said) -> Said:
     if value.limit is None:
         return sheet.own("no-limit")
     word = value.conformity
@@ -106,13 +125,12 @@ def _singles(sheet: Sheet, data: Element, value: StatedTest) -> None:
         sheet.dcc(meta, "conformityXMLList", " ".join(words))
 
 
-def conformity_statements(sheet: Sheet, statements: Element, tested: Sequence[StatedTests]) -> None:
-    """For each test one on the whole, with its rule."""
-    for tests in tested:
-        word = tests.conformity
-        if word is None:
-            continue
-        whole = sheet.own(f"whole-{word}", title=tests.title)
-        said = [(language, f"{text} {tests.rule}") for language, text in whole]
-        element = statement(sheet, statements, sheet.own("conformity"), said, "basic_conformity")
-        sheet.dcc(element, "conformity", word)
+def conformity_statements(sheet: Sheet, statements: Element, tests: StatedTests) -> None:
+    """What the profile says of itself, and a statement on the whole, with its rule."""
+    statement(sheet, statements, _title(sheet, tests), sheet.theirs(tests.statement))
+    word = tests.conformity
+    if word is None:
+        return
+    said = sheet.own(f"whole-{word}", title=_title(sheet, tests), rule=_rule(sheet, tests))
+    element = statement(sheet, statements, sheet.own("conformity"), said, "basic_conformity")
+    sheet.dcc(element, "conformity", word)
