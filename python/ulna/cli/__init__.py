@@ -20,6 +20,7 @@ from ulna.cli.plan import plan
 from ulna.cli.reproduce import reproduce
 from ulna.cli.simulate import simulate
 from ulna.cli.uncertainty import uncertainty
+from ulna.cli.verify import verify
 
 app = typer.Typer(
     name="ulna",
@@ -63,6 +64,7 @@ app.command("certificate")(certificate)
 app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)
+app.command("verify")(verify)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
 app.add_typer(exporting, name="export")
