@@ -182,7 +182,7 @@ DAMAGED: dict[str, tuple[dict[str, Any], str]] = {
     "a verdict without limit": (figure("E_Uni", 0.01, "pass", limit=None), "no limit or no guard band"),
     "another U": (figure("E_Uni", 0.01, "pass", expanded=0.001), "figure E_Uni: expanded is not k times u"),
     "U of nothing": (figure("E_Uni", 0.01, "pass", u=None), "expanded is not k times u"),
-    "a text": (figure("E_Uni", 0.01, "pass", value="0.01"), "'states.1.tests.1.figures.1.value'"),
+    "a text": (figure("E_Uni", 0.01, "pass") | {"value": "0.01"}, "'states.1.tests.1.figures.1.value'"),
 }
 
 

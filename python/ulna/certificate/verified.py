@@ -50,7 +50,8 @@ def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -
 
 
 def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
-    for each in (figure, *figure.individual):
+    verdicts: list[FigureTable | ValueTable] = [figure, *figure.individual]
+    for each in verdicts:
         _check_verdict(path, figure.name, each)
     if (figure.u is None) != (figure.expanded is None) or (
         figure.u is not None
