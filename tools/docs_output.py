@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 from docs_artefacts import artefact_table
@@ -76,6 +77,39 @@ def first_lines(text: str, lines: int) -> str:
     return "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
 
 
+#: how the page on certificates comes to its own; only what the last one prints is shown
+CERTIFICATE = [
+    ["verify", "--make-plan", "iso-10360-12", "--play", "out/demo/arm.toml", "-o", "out/to-measure"],
+    ["verify", "out/demo/result.json", "out/to-measure/plan.toml", "-o", "out/tested"],
+    [
+        *["certificate", "out/demo/result.json", "examples/platinum/laboratory.toml", "--dcc"],
+        *["--verification", "out/tested/verification.json", "-o", "out/certificate.xml"],
+    ],
+]
+
+
+def certificate_outputs(folder: Path) -> dict[str, str]:
+    """What the command prints, and pieces of its XML, long lists cut short. Raises RuntimeError where one fails."""
+    for arguments in CERTIFICATE:
+        done = ulna(arguments, folder)
+        if done.returncode != 0:
+            raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
+    text = (folder / "out" / "certificate.xml").read_text(encoding="utf-8")
+    second = [match.start() for match in re.finditer("<si:columnXMLList>", text)][1]
+    size = text.index("<dcc:content>P_Size.Sph")
+    return {
+        "certificate.txt": tidy(done.stdout),
+        "certificate-head.txt": _piece(text, text.index('<dcc:quantity refType="basic_measuredValue">'), second),
+        "certificate-test.txt": _piece(text, text.rindex("<dcc:quantity ", 0, size), text.index("<dcc:data>", size)),
+    }
+
+
+def _piece(text: str, begin: int, end: int) -> str:
+    """Whole lines from begin to end, without their indent."""
+    lines = textwrap.dedent(text[text.rindex("\n", 0, begin) + 1 : end].rstrip()).splitlines()
+    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).{30,}?(?=</si)", r"\1…", line) for line in lines) + "\n…\n"
+
+
 def command_outputs(pictures: bool = False) -> dict[str, str]:
     """File name → text, of all commands; pictures: also put theirs in place. Raises RuntimeError where one fails."""
     found = {}
@@ -93,6 +127,7 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
         if done.returncode != 0:
             raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
         found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
+        found |= certificate_outputs(folder)
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ulna.files.arm import ArmFile
+from ulna.files.laboratory_tables import LaboratoryFile
 from ulna.files.performance import PerformanceFile
 from ulna.files.plan import PlanFile
 from ulna.files.profile_tables import ProfileFile
@@ -32,6 +33,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-task-1": TaskFile,
     "ulna-volume-1": VolumeFile,
     "ulna-performance-1": PerformanceFile,
+    "ulna-lab-1": LaboratoryFile,
     "ulna-profile-1": ProfileFile,
     "ulna-verify-1": VerifyFile,
     "ulna-verification-1": VerificationFile,
