@@ -49,7 +49,7 @@ def uncertainty(
     arm = arm_of_result(document, result)
     made = document.get("provenance", {})
     if study is not None:
-        _check_same(study, made, result)
+        check_same(study, made, result)
     remarks: list[str] = []
     stated = read_task(task, arm, {kind: list(found.features) for kind, found in MEASURANDS.items()}, remarks)
     for remark in remarks:
@@ -85,7 +85,7 @@ def uncertainty(
     )
 
 
-def _check_same(study: Study, made: dict[str, Any], result: Path) -> None:
+def check_same(study: Study, made: dict[str, Any], result: Path) -> None:
     """Raises UlnaInputError where the result was not made from this study."""
     theirs = [file.get("sha256") for file in made.get("files", [])]
     if theirs != [file.sha256 for file in study.files]:
