@@ -48,7 +48,8 @@ def parameters(result: Result) -> Parameters:
                 reason=because.get(row.name) if row.status == "not-determined" else None,
             )
         )
-    names, matrix = correlation(result.covariance)
+    known = {row.name for row in rows if row.u is not None}
+    names, matrix = correlation(result.covariance.of([name for name in result.covariance.names if name in known]))
     return Parameters(rows, k, COVERAGE, freedom, result.probes, names, matrix)
 
 

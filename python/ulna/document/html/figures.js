@@ -2,20 +2,26 @@
 "use strict";
 (function () {
   var light = {
-    main: "#0072b2", outlier: "#d55e00", second: "#009e73", ink: "#1b1f24", grid: "#e3e7ec", axis: "#8a939e",
+    main: "#0072b2", faint: "#a9cfe6", outlier: "#d55e00", second: "#009e73", ink: "#1b1f24", grid: "#e3e7ec", axis: "#8a939e",
     paper: "#ffffff"
   };
   var dark = {
-    main: "#56b4e9", outlier: "#ee7733", second: "#2fc39a", ink: "#e7eaee", grid: "#2e353d", axis: "#77818d",
+    main: "#56b4e9", faint: "#2b5875", outlier: "#ee7733", second: "#2fc39a", ink: "#e7eaee", grid: "#2e353d", axis: "#77818d",
     paper: "#14171b"
   };
+  var NARROW = 480;
   var root = document.documentElement;
   var system = window.matchMedia("(prefers-color-scheme: dark)");
   var figures = JSON.parse(document.getElementById("figure-data").textContent);
-  var config = {
-    responsive: true, displaylogo: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"]
-  };
+  /* only these buttons: Plotly has one that sends the readings to its maker's server */
+  var flat = ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"];
+  var solid = ["orbitRotation", "zoom3d", "pan3d", "resetCameraDefault3d"];
+
+  function configOf(figure) {
+    return {
+      responsive: true, displaylogo: false, plotlyServerURL: "", modeBarButtons: [figure.solid ? solid : flat]
+    };
+  }
 
   function isDark() {
     return root.dataset.theme ? root.dataset.theme === "dark" : system.matches;
@@ -42,24 +48,33 @@
     layout.paper_bgcolor = layout.plot_bgcolor = "rgba(0,0,0,0)";
     layout.font = { color: colours.ink, size: 12, family: getComputedStyle(document.body).fontFamily };
     layout.hoverlabel = { align: "left" };
+    layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: colours.axis, activecolor: colours.ink };
     return layout;
+  }
+
+  /* on a phone: a camera farther off, and no labels that would stand on each other; touching a cell tells its names */
+  function narrowed(layout) {
+    if (layout.scene) {
+      ["x", "y", "z"].forEach(function (each) { layout.scene.camera.eye[each] *= 1.5; });
+    }
+    if (layout.xaxis && layout.xaxis.dtick === 1 && layout.xaxis.tickangle) { layout.xaxis.showticklabels = false; }
   }
 
   function draw(figure) {
     var colours = isDark() ? dark : light;
     var place = document.getElementById("plot-" + figure.name);
-    return Plotly.react(place, coloured(figure.data, colours), layoutOf(figure, colours), config);
+    var layout = layoutOf(figure, colours);
+    if (place.clientWidth < NARROW) { narrowed(layout); }
+    return Plotly.react(place, coloured(figure.data, colours), layout, configOf(figure));
   }
 
   /* printing starts when the browser says so, so the pictures are made before */
   function picture(figure) {
     var place = document.getElementById("plot-" + figure.name);
     var height = parseInt(place.style.height, 10);
-    var size = figure.solid || height > 500 ? { width: 820, height: height } : { width: 640, height: height };
-    var whole = place.closest(".grid") ? 560 : 820;
-    size.width = Math.max(whole, size.width * (whole === 560 ? 0 : 1));
+    var width = place.closest(".grid") ? 520 : 860;
     var sheet = { data: coloured(figure.data, light), layout: layoutOf(figure, light) };
-    var options = { format: figure.solid ? "png" : "svg", width: size.width, height: size.height };
+    var options = { format: figure.solid ? "png" : "svg", width: width, height: height };
     if (figure.solid) { options.scale = 2; }
     return Plotly.toImage(sheet, options).then(function (source) {
       var image = document.createElement("img");

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import math
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -49,9 +50,14 @@ def in_figure(value: Any) -> str:
     return str(value) if isinstance(value, int) else f"{ISOLATE}{html.escape(str(value), quote=False)}{END}"
 
 
+def prose(given: str) -> str:
+    """Our own words: escaped, `commands` as code."""
+    return re.sub("`([^`]+)`", r"<code>\1</code>", html.escape(given, quote=True))
+
+
 def words_for_page(language: str) -> Words:
     """The words of a language, for HTML."""
-    return Words(language, text, in_sentence)
+    return Words(language, prose, in_sentence)
 
 
 def words_for_figures(language: str) -> Words:
@@ -73,15 +79,16 @@ def paragraph(content: str, kind: str = "") -> str:
     return f"<p{marked}>{content}</p>\n" if content else ""
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence[str]], label: str, left: int = 1) -> str:
-    """Cells are HTML; the first `left` columns hold words, the others numbers. It scrolls where it is too wide."""
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]], label: str, left: int = 1, tall: bool = False) -> str:
+    """Cells are HTML; the first `left` columns hold words, the others numbers. It scrolls where it is too wide, and a
+    `tall` one where it is too long."""
     top = "".join(f'<th scope="col"{_side(k < left)}>{head}</th>' for k, head in enumerate(heads))
     body = []
     for row in rows:
         cells = "".join(f"<td{_side(k < left)}>{cell}</td>" for k, cell in enumerate(row))
         body.append(f"<tr>{cells}</tr>\n")
     return (
-        f'<div class="scroll" role="region" tabindex="0" aria-label="{label}"><table>\n'
+        f'<div class="scroll{" tall" if tall else ""}" role="region" tabindex="0" aria-label="{label}"><table>\n'
         f"<thead><tr>{top}</tr></thead>\n<tbody>\n{''.join(body)}</tbody></table></div>\n"
     )
 

@@ -21,6 +21,7 @@ from ulna.document.html.parameter_plots import correlation_plot, length_plot, si
 from ulna.document.html.plots import Plot
 from ulna.document.html.residual_plots import cloud_plot, distribution_plots, pose_plot, space_plot
 from ulna.document.languages import Words
+from ulna.report.digits import small
 
 #: nothing is fetched, sent or framed, and only the two scripts of this file run, known by their SHA-256
 POLICY = (
@@ -119,8 +120,8 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         + lacks("study", "lengths", "verification"),
         "artefacts": tables.artefact_table(content, words) + lacks("study"),
         "environment": _environment(content, words),
-        "decision": paragraph(words("decision.none")) + lacks("verification"),
-        "traceability": paragraph(words("traceability.none"), "missing") + lacks("laboratory"),
+        "decision": paragraph(words("decision.none")),
+        "traceability": lacks("laboratory"),
         "outliers": tables.outlier_table(content, words),
         "placements": tables.placement_table(content, words),
         "extras": tables.extra_table(content, words),
@@ -152,7 +153,7 @@ def _environment(content: Content, words: Words) -> str:
     if found.encoder_rad:
         each = found.encoder_rad
         one = len(set(each)) == 1
-        encoder = f"{each[0]:g}" if one else ", ".join(f"{value:g}" for value in each)
+        encoder = ", ".join(small(value, 2) for value in (each[:1] if one else each))
         said.append((words("environment.encoder", encoder=encoder), ""))
     if found.seat_mm is not None:
         said.append((words("environment.seat", seat=f"{found.seat_mm:g}"), ""))

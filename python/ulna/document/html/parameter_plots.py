@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 
 import numpy as np
 
@@ -42,7 +43,7 @@ def correlation_plot(parameters: Parameters, page: Words, words: Words) -> Plot:
     shape = layout(
         axis("", tickangle=-90, **ticks),
         axis("", autorange="reversed", **ticks),
-        margin={"l": 8, "r": 8, "t": 8, "b": 8},
+        margin={"l": 8, "r": 8, "t": 34, "b": 8},
     )
     return Plot("correlation", page("correlation.note"), data, shape, 200 + 15 * len(names))
 
@@ -56,9 +57,11 @@ def singular_plot(found: Observability, page: Words, words: Words) -> Plot:
     lost = ~kept & (values > 0.0)
     if lost.any():
         data.append(points(words("legend.lost"), number[lost], values[lost], SECOND, "diamond-open", 9))
-    y = axis(words("axis.singular-value"), type="log", exponentformat="power", dtick=1)
-    if values[kept].min() > 1e-2:
-        y |= {"dtick": "D2"}
+    seen = values[values > 0.0]
+    decades = math.log10(float(seen[0] / seen[-1]))
+    # ticks within decades where there are few of them, else some of the decades
+    step: str | int = "D2" if decades < 2.2 else math.ceil(decades / 8)
+    y = axis(words("axis.singular-value"), type="log", exponentformat="power", dtick=step)
     shape = layout(axis(words("axis.index"), zeroline=False), y, bool(lost.any()))
     return Plot("singular", page("observability.note", equations=found.equations), data, shape)
 
@@ -67,7 +70,7 @@ def length_plot(lengths: Lengths, page: Words, words: Words) -> Plot:
     """Length errors of the fitted readings."""
     part = shown(np.zeros(len(lengths.error_mm), dtype=bool), MOST_LENGTHS)
     data = [points(words("legend.readings"), lengths.length_mm[part.index], lengths.error_mm[part.index], MAIN)]
-    caption = page("lengths.note", count=len(lengths.error_mm))
+    caption: str = page("lengths.note", count=len(lengths.error_mm))
     caption += f" {page.say(part.said)}" if part.step > 1 else ""
     x = axis(words("axis.length-mm"), zeroline=False)
     if float(np.ptp(lengths.length_mm)) == 0.0:  # one length: an axis that is not made of rounding

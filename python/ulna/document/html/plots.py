@@ -7,7 +7,7 @@ shape of its own besides. A colour here is a name such as "@main"; the page's sc
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,9 +32,6 @@ class Plot:
     height_px: int = 340
     solid: bool = False
     """Three-dimensional: drawn by WebGL."""
-    title: str = ""
-    """HTML, above it."""
-    more: dict[str, Any] = field(default_factory=dict)
 
 
 def numbers(values: ArrayLike) -> list[float | None]:
@@ -62,7 +59,7 @@ def layout(x: Mapping[str, Any], y: Mapping[str, Any], legend: bool = False, **m
         "yaxis": dict(y),
         "showlegend": legend,
         "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
-        "margin": {"l": 56, "r": 12, "t": 34 if legend else 12, "b": 48},
+        "margin": {"l": 56, "r": 12, "t": 56 if legend else 34, "b": 48},
         "hovermode": "closest",
         **more,
     }

@@ -20,7 +20,7 @@ I64 = NDArray[np.int64]
 
 MOST_POINTS = 1500
 """Of one cloud; besides them all outliers."""
-MOST_BARS = 400
+MOST_BARS = 600
 MOST_VECTORS = 1500
 TAILS = 100
 ARROW = 0.08
@@ -78,19 +78,27 @@ def _quantiles(name: str, sample: Sample, caption: str, page: Words, words: Word
 
 
 def cloud_plot(cloud: Cloud, readings: ReadingRows, page: Words, words: Words) -> Plot:
-    """Readings, outliers and means."""
+    """Readings, outliers and means. The axis is that of the readings; outliers beyond it stand at its edge."""
     outlier = readings.outlier[cloud.reading]
     part = shown(outlier, MOST_POINTS)
     plain = part.index[~outlier[part.index]]
-    far = np.flatnonzero(outlier)
     titles = {
         "joint": words("axis.joint-deg", joint=cloud.joint),
         "reach": words("axis.reach-mm"),
         "temperature": words("axis.temperature-joint", joint=cloud.joint) if cloud.joint else words("axis.temperature"),
     }
+    signed = cloud.over == "joint"
+    most = 1.15 * float(np.abs(cloud.residual_mm[~outlier]).max(initial=0.0))
+    beyond = outlier & (np.abs(cloud.residual_mm) > most) if most > 0.0 else np.zeros(len(outlier), dtype=bool)
     data = [_marks(words("legend.readings"), cloud, plain, readings, MAIN, "circle", 5, words)]
-    if len(far):
-        data.append(_marks(words("legend.outliers"), cloud, far, readings, OUTLIER, "x", 9, words))
+    for kept, symbol, edge in (
+        (outlier & ~beyond, "x", None),
+        (beyond & (cloud.residual_mm > 0.0), "triangle-up", most),
+        (beyond & (cloud.residual_mm < 0.0), "triangle-down", -most),
+    ):
+        if kept.any():
+            far = np.flatnonzero(kept)
+            data.append(_marks(words("legend.outliers"), cloud, far, readings, OUTLIER, symbol, 9, words, edge))
     if len(cloud.trend.x):
         data.append(
             points(
@@ -103,18 +111,34 @@ def cloud_plot(cloud: Cloud, readings: ReadingRows, page: Words, words: Words) -
                 error_y={"type": "data", "array": numbers(2.0 * cloud.trend.u_mm), "color": INK, "thickness": 1.5},
             )
         )
-    y = axis(words("axis.along-joint-mm" if cloud.over == "joint" else "axis.size-mm"))
-    if cloud.over != "joint":
-        y["rangemode"] = "tozero"
-    name = f"{cloud.over}-{cloud.joint}"
-    return Plot(name, page.say(part.said), data, layout(axis(titles[cloud.over], zeroline=False), y), 300)
+    y = axis(words("axis.along-joint-mm" if signed else "axis.size-mm"))
+    if most > 0.0:
+        y["range"] = numbers([-1.08 * most if signed else 0.0, 1.08 * most])
+    caption: str = page.say(part.said)
+    if beyond.any():
+        caption += f" {page('shown.beyond', beyond=int(beyond.sum()))}"
+    return Plot(f"{cloud.over}-{cloud.joint}", caption, data, layout(axis(titles[cloud.over], zeroline=False), y), 300)
 
 
 def _marks(
-    label: str, cloud: Cloud, kept: I64, readings: ReadingRows, colour: str, symbol: str, size: float, words: Words
+    label: str,
+    cloud: Cloud,
+    kept: I64,
+    readings: ReadingRows,
+    colour: str,
+    symbol: str,
+    size: float,
+    words: Words,
+    edge: float | None = None,
 ) -> dict[str, object]:
-    hover = [reading_label(readings, int(k), words) for k in cloud.reading[kept]]
-    return points(label, cloud.x[kept], cloud.residual_mm[kept], colour, symbol, size, text=hover, hoverinfo="text+x+y")
+    """edge: where they stand, their own values being beyond the axis."""
+    value = cloud.residual_mm[kept]
+    hover = [
+        f"{reading_label(readings, int(k), words)}<br>{number(float(size_mm))} mm"
+        for k, size_mm in zip(cloud.reading[kept], value, strict=True)
+    ]
+    height = value if edge is None else np.full(len(kept), edge)
+    return points(label, cloud.x[kept], height, colour, symbol, size, text=hover, hoverinfo="text+x")
 
 
 def reading_label(readings: ReadingRows, k: int, words: Words) -> str:
@@ -136,7 +160,7 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
     labels = [reading_label(readings, int(k), words) for k in found.first]
     colour = [OUTLIER if far else MAIN for far in found.outlier]
 
-    def bars(label: str, height: F64, opacity: float) -> dict[str, object]:
+    def bars(label: str, height: F64, colour: str | list[str]) -> dict[str, object]:
         return {
             "type": "bar",
             "name": label,
@@ -145,11 +169,17 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
             "text": labels,
             "textposition": "none",
             "hoverinfo": "text+y",
-            "marker": {"color": colour, "opacity": opacity, "line": {"width": 0}},
+            "marker": {"color": colour, "line": {"width": 0}},
         }
 
-    data = [bars(words("legend.max"), found.largest, 0.4)] if not one else []
-    data.append(bars(words("legend.readings" if one else "legend.rms"), found.rms, 1.0))
+    data = [bars(words("legend.max"), found.largest, "@faint")] if not one else []
+    data.append(
+        bars(
+            words("legend.readings" if one else "legend.rms"),
+            found.rms,
+            MAIN if one and not found.outlier.any() else colour,
+        )
+    )
     if found.outlier.any():
         data.append(points(words("legend.outliers"), x[found.outlier], found.largest[found.outlier], OUTLIER, "x", 9))
     shape = layout(
@@ -193,12 +223,12 @@ def space_plot(quiver: Quiver, content: Content, page: Words, words: Words) -> P
         for each in "xyz"
     }
     shape = {
-        "scene": {**axes, "aspectmode": "data"},
+        "scene": {**axes, "aspectmode": "data", "camera": {"eye": {"x": 1.3, "y": 1.3, "z": 0.8}}},
         "margin": {"l": 0, "r": 0, "t": 30, "b": 0},
         "showlegend": True,
         "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
     }
-    caption = f"{page('space.note', factor=number(factor))} {page.say(part.said)}"
+    caption = f"{page('space.note', factor=int(factor) if factor >= 1.0 else factor)} {page.say(part.said)}"
     return Plot("space", caption, data, shape, 560, solid=True)
 
 

@@ -13,7 +13,7 @@ from ulna.document.html.markup import name, number, paragraph, table, text
 from ulna.document.languages import Words
 from ulna.figures import NAMES, PlacementFigures
 from ulna.report.digits import decimals, figure_mm, fixed, quantity, uncertainty
-from ulna.report.identification import combination
+from ulna.report.identification import combination, sentence
 
 MOST_OUTLIERS = 2000
 MOST_PLACEMENTS = 500
@@ -65,7 +65,7 @@ def _cylindrical(content: Content, words: Words) -> str:
     for view in content.parameters.probes:
         status = words(f"status.{view.status}")
         if view.theta0_rad is None:
-            shown = [words("parameters.undefined"), words("parameters.undefined")]
+            shown: list[str] = [words("parameters.undefined"), words("parameters.undefined")]
         else:
             shown = [fixed(view.theta0_rad, decimals(view.u_theta0_rad, "rad")), uncertainty(view.u_theta0_rad)]
         rows.append([name(f"probe.{view.name}"), "θ₀", "rad", status, *shown])
@@ -102,8 +102,8 @@ def _directions(directions: Sequence[Mapping[str, Any]], label: str, words: Word
             [
                 name(combination(each["combination"])),
                 (words(key) if words.has(key) else name(cause)) if cause else u,
-                f'<span lang="en">{name(each["because"])}</span>{frame}',
-                f'<span lang="en">{name(each["remedy"])}</span>',
+                f'<span lang="en">{name(sentence(each["because"]))}</span>{frame}',
+                f'<span lang="en">{name(sentence(each["remedy"]))}</span>',
             ]
         )
     heads = [words("column.combination"), words("column.cause"), words("column.because"), words("column.remedy")]
@@ -136,11 +136,11 @@ def artefact_table(content: Content, words: Words) -> str:
     rows = []
     for row in content.artefacts:
         unknown = row.u_mm is None
-        u = words("dimension.unknown") if unknown else words("artefact.u-none")
+        u: str = words("dimension.unknown") if unknown else words("artefact.u-none")
         if row.u_mm:
             u = f"{text(uncertainty(row.u_mm))} mm"
         if row.dimension is None:
-            what = words("dimension.unknown" if unknown else "dimension.none")
+            what: str = words("dimension.unknown" if unknown else "dimension.none")
             u = "–" if not unknown else u
         else:
             value = text(f"{row.value_mm:.10g}") if row.value_mm is not None else ""
@@ -167,7 +167,7 @@ def outlier_table(content: Content, words: Words) -> str:
         cells = [name(entry.get(key, "–")) for key in keys]
         cells += [text(figure_mm(entry["norm_mm"])), text(number(float(entry["times_scatter"])))]
         rows.append(cells + ([text(number(float(entry.get("counted", 1.0))))] if counted else []))
-    page = table(heads, rows, words("section.outliers"), left=6) + paragraph(words("outliers.note"), "note")
+    page = table(heads, rows, words("section.outliers"), left=6, tall=True) + paragraph(words("outliers.note"), "note")
     more = len(content.outliers) - MOST_OUTLIERS
     return page + (paragraph(words("outliers.more", more=more, shown=MOST_OUTLIERS), "missing") if more > 0 else "")
 
@@ -193,7 +193,9 @@ def placement_table(content: Content, words: Words) -> str:
     ]
     heads = [words("column.artefact"), words("column.placement"), words("column.count")]
     heads += [words(f"figure.{key}") for key in columns]
-    page = table(heads, rows, words("section.placements"), left=2) + paragraph(words("placements.note"), "note")
+    page = table(heads, rows, words("section.placements"), left=2, tall=True) + paragraph(
+        words("placements.note"), "note"
+    )
     if len(kept) < len(entries):
         page += paragraph(words("placements.more", shown=len(kept), count=len(entries)), "missing")
     return page
