@@ -55,7 +55,7 @@
   /* on a phone: a camera farther off, and no labels that would stand on each other; touching a cell tells its names */
   function narrowed(layout) {
     if (layout.scene) {
-      ["x", "y", "z"].forEach(function (each) { layout.scene.camera.eye[each] *= 1.5; });
+      ["x", "y", "z"].forEach(function (each) { layout.scene.camera.eye[each] *= 1.9; });
     }
     if (layout.xaxis && layout.xaxis.dtick === 1 && layout.xaxis.tickangle) { layout.xaxis.showticklabels = false; }
   }
