@@ -49,7 +49,7 @@ PYTHON_LAYERS = [
         "reproduce",
     },
     {"report"},
-    {"document"},
+    {"certificate", "document"},
     {"cli", "__main__"},
 ]
 LAYER = {name: number for number, names in enumerate(PYTHON_LAYERS) for name in names}

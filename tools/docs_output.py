@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 from docs_errors import error_page
@@ -32,6 +33,17 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
+    "certificate.txt": (
+        [
+            "certificate",
+            "out/demo/result.json",
+            "examples/platinum/laboratory.toml",
+            "--dcc",
+            "-o",
+            "out/certificate.xml",
+        ],
+        None,
+    ),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
@@ -63,6 +75,14 @@ def first_lines(text: str, lines: int) -> str:
     return "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
 
 
+def certificate_excerpt(text: str) -> str:
+    """The list of fitted parameters, up to the second column of its covariance; long lists are cut short."""
+    begin = text.rindex("\n", 0, text.index('<dcc:quantity refType="basic_measuredValue">')) + 1
+    second = [match.start() for match in re.finditer("<si:columnXMLList>", text)][1]
+    lines = textwrap.dedent(text[begin:second].rstrip()).splitlines()
+    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).*?(?=</)", r"\1…", line) for line in lines) + "\n…\n"
+
+
 def command_outputs(pictures: bool = False) -> dict[str, str]:
     """File name → text, of all commands; pictures: also put theirs in place. Raises RuntimeError where one fails."""
     found = {}
@@ -80,6 +100,7 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
         if done.returncode != 0:
             raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
         found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
+        found["certificate-head.txt"] = certificate_excerpt((folder / "out" / "certificate.xml").read_text("utf-8"))
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)

@@ -8,6 +8,7 @@ import typer
 
 from ulna.cli.batch import batch
 from ulna.cli.calibrate import calibrate
+from ulna.cli.certificate import certificate
 from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
 from ulna.cli.exporting import app as exporting
@@ -59,6 +60,7 @@ app.command("evaluate")(evaluate)
 app.command("measure")(measure)
 app.command("uncertainty")(uncertainty)
 app.command("cross-validate")(cross_validate)
+app.command("certificate")(certificate)
 app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)

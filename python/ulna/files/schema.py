@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from ulna.files.arm import ArmFile
+from ulna.files.laboratory_tables import LaboratoryFile
 from ulna.files.plan import PlanFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.files.simulation_tables import SimulationFile
@@ -25,6 +26,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-simulation-1": SimulationFile,
     "ulna-plan-1": PlanFile,
     "ulna-task-1": TaskFile,
+    "ulna-lab-1": LaboratoryFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,
