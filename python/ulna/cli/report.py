@@ -36,6 +36,10 @@ def report(
     evaluation: Annotated[
         Path | None, typer.Option("--evaluation", metavar="FILE", help="An evaluation.json: readings held out.")
     ] = None,
+    laboratory: Annotated[
+        Path | None,
+        typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
+    ] = None,
     language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
     force: Force = False,
 ) -> None:
@@ -55,9 +59,9 @@ def report(
     one_of("--language", language, LANGUAGES)
     formats = ["html"] if as_html else []
     wanted = targets(out, formats or ["html"], force)
-    content = gather(result, study, cross_validation, evaluation)
+    content = gather(result, study, cross_validation, evaluation, laboratory)
     files = [result / "result.json" if result.is_dir() else result]
-    files += [path for path in (study, cross_validation, evaluation) if path is not None]
+    files += [path for path in (study, cross_validation, evaluation, laboratory) if path is not None]
     write_report(content, wanted, language, files, force)
     for said in content.missing.values():
         if said.key == "study.changed":

@@ -19,6 +19,7 @@ from ulna.result import FitSummary
 
 if TYPE_CHECKING:
     from ulna.extras import JudgedExtra
+    from ulna.files.laboratory import Laboratory
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -293,8 +294,8 @@ class Content:
     extras: list[JudgedExtra]
     verification: Any
     """What `ulna verify` found, or None."""
-    laboratory: Any
-    """The laboratory's data, or None."""
+    laboratory: Laboratory | None
+    """What the laboratory file says, where one was given."""
     missing: dict[str, Said]
     """Section → what it lacks and what would be needed: "study", "joints", "temperature", "verification", …"""
     provenance: Provenance

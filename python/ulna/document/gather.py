@@ -27,6 +27,7 @@ from ulna.document.known import observability, parameters
 from ulna.document.quality import held_out, quality_rows, residual_row
 from ulna.document.source import find_study
 from ulna.evaluate import study_of_arm
+from ulna.files.laboratory import load_laboratory
 from ulna.files.toml import read_bytes, sha256
 from ulna.result import Result
 from ulna.study import Artefact, Study
@@ -37,12 +38,15 @@ def gather(
     study: Path | None = None,
     cross_validation: Path | None = None,
     evaluation: Path | None = None,
+    laboratory: Path | None = None,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
     result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
-    longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out.
+    longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
+    calibrated for whom, with what.
     """
+    named = None if laboratory is None else load_laboratory(laboratory)
     path = result / "result.json" if result.is_dir() else result
     found = Result.load(path)
     source, files, no_study = find_study(found, path, study)
@@ -55,7 +59,9 @@ def gather(
         fitted = study_of_arm(source, found.arm)
         over, quiver = clouds(fitted, found.arm, found.residuals)
         lengths = _lengths(source, found)
-    missing |= _missing(found, source, over, quiver, rows)
+    if named is None:
+        missing["laboratory"] = Said("missing.laboratory")
+    missing |= _missing(found, source, over, quiver, lengths, rows)
     made = found.provenance
     return Content(
         arm=found.arm.name,
@@ -78,7 +84,7 @@ def gather(
         outliers=found.outliers,
         extras=found.extras,
         verification=None,
-        laboratory=None,
+        laboratory=named,
         missing=missing,
         provenance=Provenance(
             program=str(made.get("program", "ulna")),
@@ -96,7 +102,12 @@ def gather(
 
 
 def _missing(
-    result: Result, study: Study | None, over: Sequence[Cloud], quiver: Quiver | None, held: Sequence[QualityRow]
+    result: Result,
+    study: Study | None,
+    over: Sequence[Cloud],
+    quiver: Quiver | None,
+    lengths: Lengths | None,
+    held: Sequence[QualityRow],
 ) -> dict[str, Said]:
     """What a section lacks, and what would be needed."""
     missing: dict[str, Said] = {}
@@ -108,6 +119,8 @@ def _missing(
             missing["joint"] = Said("missing.joint")
         if "temperature" not in kinds:
             missing["temperature"] = Said("missing.temperature")
+        if lengths is None:
+            missing["lengths"] = Said("missing.lengths")
         if quiver is None:
             missing["quiver"] = Said("missing.quiver")
     if not result.covariance.names:
@@ -115,7 +128,6 @@ def _missing(
     if observability(result) is None:
         missing["observability"] = Said("missing.observability")
     missing["verification"] = Said("missing.verification")
-    missing["laboratory"] = Said("missing.laboratory")
     return missing
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib import resources
 
 from ulna.document.content import Content
-from ulna.document.html import summary, tables
+from ulna.document.html import laboratory, summary, tables
 from ulna.document.html.markup import (
     json_in_script,
     paragraph,
@@ -85,6 +85,7 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
     known = content.parameters
     found = {
         "summary": summary.summary(content, words),
+        "laboratory": laboratory.laboratory(content, words),
         "quality": summary.quality(content, words),
         "distribution": grid([figure(plot) for plot in distribution_plots(content.samples, words, labels)])
         + paragraph(words("distribution.note"), "note"),
@@ -119,9 +120,9 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         "lengths": (figure(length_plot(content.lengths, words, labels)) if content.lengths is not None else "")
         + lacks("study", "lengths", "verification"),
         "artefacts": tables.artefact_table(content, words) + lacks("study"),
-        "environment": _environment(content, words),
+        "environment": laboratory.conditions(content, words) + _environment(content, words),
         "decision": paragraph(words("decision.none")),
-        "traceability": lacks("laboratory"),
+        "traceability": laboratory.traceability(content, words) + lacks("laboratory"),
         "outliers": tables.outlier_table(content, words),
         "placements": tables.placement_table(content, words),
         "extras": tables.extra_table(content, words),
