@@ -18,7 +18,7 @@ def laboratory(content: Content, words: Words) -> str:
     made = file.certificate
     days = [("received", made.received), ("begin", made.begin), ("end", made.end), ("issued", made.issued)]
     item = file.item
-    rows = [
+    rows: list[tuple[str, str]] = [
         (words("laboratory.identifier"), name(made.identifier)),
         (words("laboratory.laboratory"), _contact(found, file.laboratory, language)),
         (words("laboratory.customer"), _contact(found, file.customer, language)),
