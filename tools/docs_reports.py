@@ -1,0 +1,39 @@
+"""The reports that the documentation links to, made while it is built: a hook of MkDocs. They are not committed."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from docs_running import reader_folder, ulna
+
+#: the experiment of Cheng, Yu and Fei (2011) on the virtual arm of their Table 4: 101 bars fitted, fresh bars held out
+STEPS = [
+    ["calibrate", "examples/platinum/study.toml", "-o", "out/demo"],
+    ["evaluate", "out/demo/result.json", "examples/platinum/check.toml", "-o", "out/check"],
+]
+REPORT = ["report", "out/demo", "--evaluation", "out/check/evaluation.json"]
+LANGUAGES = ("en", "de")
+
+
+def cheng2011_reports() -> dict[str, bytes]:
+    """Name → page, one for each language that the example's laboratory file knows. Raises RuntimeError."""
+    with reader_folder() as folder:
+        lab = ["--lab", "examples/platinum/laboratory.toml"]
+        names = {language: f"cheng2011-{language}.html" for language in LANGUAGES}
+        written = [[*REPORT, *lab, "--language", each, "-o", name] for each, name in names.items()]
+        for arguments in [*STEPS, *written]:
+            done = ulna(arguments, folder)
+            if done.returncode != 0:
+                raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
+        return {name: (folder / name).read_bytes() for name in names.values()}
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Called by MkDocs: the reports stand in the site's folder reports/."""
+    from mkdocs.structure.files import File
+
+    for name, content in cheng2011_reports().items():
+        files.append(File.generated(config, f"reports/{name}", content=content))
+    return files
