@@ -72,7 +72,7 @@
   function picture(figure) {
     var place = document.getElementById("plot-" + figure.name);
     var height = parseInt(place.style.height, 10);
-    var width = place.closest(".grid") ? 520 : 860;
+    var width = place.closest(".grid") ? 430 : 860;
     var sheet = { data: coloured(figure.data, light), layout: layoutOf(figure, light) };
     var options = { format: figure.solid ? "png" : "svg", width: width, height: height };
     if (figure.solid) { options.scale = 2; }

@@ -223,7 +223,11 @@ def space_plot(quiver: Quiver, content: Content, page: Words, words: Words) -> P
         for each in "xyz"
     }
     shape = {
-        "scene": {**axes, "aspectmode": "data", "camera": {"eye": {"x": 1.3, "y": 1.3, "z": 0.8}}},
+        "scene": {
+            **axes,
+            "aspectmode": "data",
+            "camera": {"eye": {"x": 1.4, "y": 1.4, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.15}},
+        },
         "margin": {"l": 0, "r": 0, "t": 30, "b": 0},
         "showlegend": True,
         "legend": {"orientation": "h", "x": 0, "y": 1.0, "yanchor": "bottom"},
