@@ -10,6 +10,7 @@ import pytest
 PYTHON_LAYERS = [
     {"_core"},
     {"errors", "cores"},
+    {"geometry"},
     {"effects"},
     {"directions"},
     {"model"},
@@ -46,6 +47,7 @@ PYTHON_LAYERS = [
         "batch",
         "uncertainty",
         "planning",
+        "verification",
         "reproduce",
     },
     {"report"},

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
     from ulna.uncertainty.asking import uncertainty
     from ulna.uncertainty.assess import Assessment
+    from ulna.verification.verify import Verification, verify
 
 __all__ = [
     "Arm",
@@ -58,6 +59,7 @@ __all__ = [
     "Simulation",
     "Study",
     "UlnaInputError",
+    "Verification",
     "__version__",
     "batch",
     "calibrate",
@@ -68,6 +70,7 @@ __all__ = [
     "plan",
     "simulate",
     "uncertainty",
+    "verify",
 ]
 
 _WHERE = {
@@ -92,6 +95,7 @@ _WHERE = {
     "Simulation": "simulation",
     "Study": "study",
     "UlnaInputError": "errors",
+    "Verification": "verification.verify",
     "batch": "batch",
     "calibrate": "calibrate",
     "cross_validate": "cross_validate",
@@ -101,6 +105,7 @@ _WHERE = {
     "plan": "planning.plan",
     "simulate": "simulate",
     "uncertainty": "uncertainty.asking",
+    "verify": "verification.verify",
 }
 
 

@@ -21,6 +21,7 @@ from ulna.cli.report import report
 from ulna.cli.reproduce import reproduce
 from ulna.cli.simulate import simulate
 from ulna.cli.uncertainty import uncertainty
+from ulna.cli.verify import verify
 
 app = typer.Typer(
     name="ulna",
@@ -65,6 +66,7 @@ app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)
 app.command("report")(report)
+app.command("verify")(verify)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")
 app.add_typer(exporting, name="export")

@@ -15,10 +15,13 @@ from pydantic.json_schema import GenerateJsonSchema
 from ulna.files.arm import ArmFile
 from ulna.files.laboratory_tables import LaboratoryFile
 from ulna.files.plan import PlanFile
+from ulna.files.profile_tables import ProfileFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.files.simulation_tables import SimulationFile
 from ulna.files.study import StudyFile
 from ulna.files.task import TaskFile
+from ulna.files.verification import VerificationFile
+from ulna.files.verify_tables import VerifyFile
 
 MODELS: dict[str, type[BaseModel]] = {
     "ulna-arm-1": ArmFile,
@@ -27,6 +30,9 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-plan-1": PlanFile,
     "ulna-task-1": TaskFile,
     "ulna-lab-1": LaboratoryFile,
+    "ulna-profile-1": ProfileFile,
+    "ulna-verify-1": VerifyFile,
+    "ulna-verification-1": VerificationFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

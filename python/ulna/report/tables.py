@@ -25,7 +25,7 @@ def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], left:
     for k, head in enumerate(heads):
         made.add_column(escape(head), justify="left" if k < left else "right", no_wrap=True, vertical="bottom")
     for row in rows:
-        made.add_row(*(escape(cell) for cell in row))
+        made.add_row(*(Text(cell) for cell in row))  # neither markup nor ":art:" for a picture
     return made
 
 

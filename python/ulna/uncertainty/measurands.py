@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
+from ulna.geometry.plane import fit_plane
+from ulna.geometry.sphere import fit_sphere
 
 F64 = NDArray[np.float64]
 
 MOST_READINGS = 1000
 """Of one measurement: what a plane or a ball is touched at, not a scan."""
-ROUNDS = 50
-"""Gauss–Newton steps of a sphere, at the most; each is quadratic near the end."""
 
 
 @dataclass(frozen=True)
@@ -45,39 +45,14 @@ def _length(a: F64, b: F64) -> F64:
 
 
 def _ball(touches: F64) -> F64:
-    """Centre and diameter of the least-squares sphere: algebraic first, then Gauss–Newton on the distances."""
-    middle = touches.mean(axis=1, keepdims=True)
-    at = touches - middle
-    linear = np.concatenate([2.0 * at, np.ones((*at.shape[:2], 1))], axis=2)
-    found = _solved(linear, (at**2).sum(axis=2))
-    centre = found[:, :3]
-    radius = np.sqrt(np.maximum(found[:, 3] + (centre**2).sum(axis=1), 0.0))
-    for _ in range(ROUNDS):
-        away = at - centre[:, None]
-        distance = np.linalg.norm(away, axis=2)
-        jacobian = np.concatenate([-away / distance[:, :, None], -np.ones((*distance.shape, 1))], axis=2)
-        step = _solved(jacobian, radius[:, None] - distance)
-        centre, radius = centre + step[:, :3], radius + step[:, 3]
-        if np.abs(step).max() < 1e-12 * radius.max():
-            break
-    return np.concatenate([centre + middle[:, 0], 2.0 * radius[:, None]], axis=1)
-
-
-def _solved(jacobian: F64, right: F64) -> F64:
-    """(T, k) least squares of (T, N, k) rows: by QR, so that a small cap loses no digits twice."""
-    q, r = np.linalg.qr(jacobian)
-    solution: F64 = np.linalg.solve(r, np.einsum("tnk,tn->tk", q, right)[..., None])[..., 0]
-    return solution
+    """Centre and diameter of the least-squares sphere."""
+    sphere = fit_sphere(touches, "ball")
+    return np.concatenate([sphere.centre_mm, 2.0 * sphere.radius_mm[:, None]], axis=1)
 
 
 def _distance(plane: F64, point: F64) -> F64:
     """Of the mean of the point's touches from the least-squares plane; positive on the base's side."""
-    middle = plane.mean(axis=1)
-    _, _, axes = np.linalg.svd(plane - middle[:, None], full_matrices=False)
-    normal = axes[:, 2]
-    normal = normal * np.where((normal * middle).sum(axis=1) > 0.0, -1.0, 1.0)[:, None]
-    away: F64 = ((point.mean(axis=1) - middle) * normal).sum(axis=1, keepdims=True)
-    return away
+    return fit_plane(plane, "plane").distance_mm(point.mean(axis=1))[:, None]
 
 
 MEASURANDS: dict[str, Measurand] = {

@@ -1,0 +1,1 @@
+"""Acceptance tests: touches to figures, figures to decisions."""

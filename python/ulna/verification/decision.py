@@ -1,0 +1,100 @@
+"""When a test value passes, by ISO 14253-1: a guard band g about the limit. Lengths mm.
+
+pass where |value| ≤ limit - g, fail where |value| > limit + g, else undecided; u is the uncertainty of the test value,
+not of the arm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from ulna.files.profile_tables import DecisionTable, Rule
+
+Verdict = Literal["pass", "fail", "undecided"]
+
+NO_LIMIT = "no limit stated"
+NO_UNCERTAINTY = "no uncertainty of the test value stated"
+
+FACTOR_2017 = 1.65
+"""Of u: 95 % probability of conformity at the limit of acceptance, one-sided, as ISO 14253-1:2017 has it."""
+
+
+@dataclass(frozen=True)
+class DecisionRule:
+    """How a value is compared with its limit."""
+
+    rule: Rule
+    k: float
+    p: float
+
+    @classmethod
+    def of(cls, table: DecisionTable, rule: Rule | None = None) -> DecisionRule:
+        """As a profile says, or with another rule."""
+        return cls(rule or table.rule, table.k, table.p)
+
+    @property
+    def text(self) -> str:
+        """In words, for reports."""
+        guard = {
+            "1.65u": f"g = {FACTOR_2017} u (ISO 14253-1:2017, 95 % probability of conformity)",
+            "U": f"g = U = {self.k:g} u (as older editions of ISO 14253-1 have it)",
+            "simple": "g = 0 (simple acceptance, no guard band)",
+        }[self.rule]
+        return (
+            f"Pass where |value| ≤ limit - g, fail where |value| > limit + g, else undecided; {guard}. u is the "
+            "standard uncertainty of the test value, not of the arm."
+        )
+
+    def guard_mm(self, u_mm: float | None) -> float | None:
+        """The guard band; None where it needs an uncertainty that is not known."""
+        if self.rule == "simple":
+            return 0.0
+        if u_mm is None:
+            return None
+        return (FACTOR_2017 if self.rule == "1.65u" else self.k) * u_mm
+
+    def decide(self, value_mm: float, limit_mm: float | None, u_mm: float | None) -> Decided:
+        """One value."""
+        guard = self.guard_mm(u_mm)
+        if limit_mm is None:
+            return Decided(None, guard, NO_LIMIT)
+        if guard is None:
+            return Decided(None, None, NO_UNCERTAINTY)
+        size = abs(value_mm)
+        if size <= limit_mm - guard:
+            return Decided("pass", guard)
+        return Decided("fail" if size > limit_mm + guard else "undecided", guard)
+
+
+@dataclass(frozen=True)
+class Decided:
+    """What the rule says of a value."""
+
+    verdict: Verdict | None
+    guard_mm: float | None
+    why: str | None = None
+    """Why there is no verdict."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A maximum permissible error: a + L / b."""
+
+    a_mm: float
+    b: float | None = None
+
+    def at_mm(self, length_mm: float | None) -> float:
+        """For a length; of a value that has none, a."""
+        return self.a_mm + (0.0 if self.b is None or length_mm is None else length_mm / self.b)
+
+    @property
+    def text(self) -> str:
+        """As a formula."""
+        return f"{self.a_mm:g} mm" if self.b is None else f"{self.a_mm:g} mm + L / {self.b:g}"
+
+
+def worst_verdict(verdicts: list[Verdict | None]) -> Verdict | None:
+    """Of several: one that fails makes all fail; None where nothing is said of any."""
+    ordered: tuple[Verdict, ...] = ("fail", "undecided", "pass")
+    return next((verdict for verdict in ordered if verdict in verdicts), None)

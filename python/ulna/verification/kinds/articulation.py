@@ -1,0 +1,36 @@
+"""L_Dia: one ball touched in several orientations of the probe."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ulna.errors import UlnaInputError
+from ulna.files.profile_tables import ArticulationTest
+from ulna.files.touches import Touches
+from ulna.geometry.enclosing import enclosing_sphere
+from ulna.geometry.sphere import fit_sphere
+from ulna.verification.bench import Bench, Found, called, counted, counted_each
+from ulna.verification.figures.iso_10360_12 import L_DIA
+from ulna.verification.outcome import Labels, Single
+
+
+def articulation(name: str, table: ArticulationTest, touches: Touches, bench: Bench) -> Found:
+    """Each ball in each position is a measurement of all orientations. Raises UlnaInputError."""
+    values, points, departures = [], {}, []
+    for (artefact, position), standing in touches.groups(("artefact", "position")):
+        centres = []
+        for (orientation,), own in standing.groups(("orientation",)):
+            what = called(artefact=artefact, position=position, orientation=orientation)
+            centres.append(fit_sphere(own.p_mm, f"{own.path}: test '{name}', {what}").centre_mm)
+            points[what] = len(own.row)
+        if len(centres) < 2:
+            raise UlnaInputError(
+                f"{standing.path}: test '{name}', {called(artefact=artefact, position=position)}: all "
+                f"{len(standing.row)} points are of one orientation of the probe; expected {table.orientations} "
+                "orientations in the column 'orientation'. Add it."
+            )
+        value = float(enclosing_sphere(np.stack(centres)).diameter_mm)
+        values.append(Single(Labels(artefact, position), value, bench.surroundings.standing()))
+        departures += counted("orientations of the probe", len(centres), table.orientations)
+    departures += counted_each("points in an orientation", points, table.points)
+    return Found([(L_DIA, values)], departures)

@@ -1,0 +1,48 @@
+"""Effective diameter: one ball measured several times."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ulna.errors import UlnaInputError
+from ulna.files.profile_tables import DiameterTest
+from ulna.files.touches import Touches
+from ulna.geometry.sphere import fit_sphere
+from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
+from ulna.verification.budget import Budget
+from ulna.verification.figures.asme_b89_4_22 import DIAMETER, DIAMETER_SPREAD, DIAMETER_WORST, effective_diameter_of
+from ulna.verification.outcome import Labels, Single
+
+
+def effective_diameter(name: str, table: DiameterTest, touches: Touches, bench: Bench) -> Found:
+    """Each ball is measured in several repeats. Raises UlnaInputError."""
+    means, worst, spreads, departures = [], [], [], []
+    for (artefact,), standing in touches.groups(("artefact",)):
+        ball = bench.ball(artefact, name)
+        singles, points = [], {}
+        for (position, repeat), own in standing.groups(("position", "repeat")):
+            what = called(ball=ball.name, position=position, repeat=repeat)
+            fitted = fit_sphere(own.p_mm, f"{own.path}: test '{name}', {what}")
+            diameter = 2.0 * float(fitted.radius_mm) - tip_mm(own, bench.path, name) * (-1 if ball.table.inside else 1)
+            labels = Labels(ball.name, position, repeat=repeat)
+            singles.append(Single(labels, diameter - ball.diameter_mm, ball.size_budget, ball.diameter_mm, diameter))
+            points[what] = len(own.row)
+        if len(singles) < 2:
+            raise UlnaInputError(
+                f"{standing.path}: test '{name}', ball {ball.name}: all {len(standing.row)} points are of one "
+                f"measurement; expected {table.repeats} in the column 'repeat'. Add it."
+            )
+        mean, _, spread = effective_diameter_of(np.array([single.value_mm for single in singles]))
+        labels = Labels(ball.name)
+        mean_mm = ball.diameter_mm + float(mean.value)
+        means.append(Single(labels, float(mean.value), ball.size_budget, ball.diameter_mm, mean_mm))
+        worst += singles
+        spreads.append(Single(labels, float(spread.value), _of_spread()))
+        departures += counted("measurements of the ball", len(singles), table.repeats)
+        departures += counted_each("points of a measurement", points, table.points)
+    return Found([(DIAMETER, means), (DIAMETER_WORST, worst), (DIAMETER_SPREAD, spreads)], departures)
+
+
+def _of_spread() -> Budget:
+    """The same ball each time: what is wrong with its calibration is in no difference."""
+    return Budget([], ["nothing of the artefact: it is the same in every measurement"])

@@ -1,0 +1,39 @@
+"""Single-point articulation: one seat touched again and again while elbow and wrist move."""
+
+from __future__ import annotations
+
+from ulna.errors import UlnaInputError
+from ulna.files.profile_tables import SinglePointTest
+from ulna.files.touches import Touches
+from ulna.verification.bench import Bench, Found, called, counted, counted_each
+from ulna.verification.figures.asme_b89_4_22 import single_point as asme
+from ulna.verification.figures.faro import half_ranges
+from ulna.verification.figures.figure import Definition, Figure
+from ulna.verification.outcome import Labels, Single
+
+
+def single_point(name: str, table: SinglePointTest, touches: Touches, bench: Bench) -> Found:
+    """Each position is a seat. Raises UlnaInputError."""
+    found: dict[Definition, list[Single]] = {}
+    points = {}
+    standing = bench.surroundings.standing()
+    for (artefact, position), own in touches.groups(("artefact", "position")):
+        what = called(artefact=artefact, position=position)
+        if len(own.row) < 2:
+            raise UlnaInputError(
+                f"{own.path}: row {own.row[0]}: test '{name}', {what}: touched once; expected {table.points} touches "
+                "of each seat. Take more, or correct the column 'position'."
+            )
+        figures: list[Figure] = []
+        if "asme" in table.figures:
+            figures += asme(own.p_mm)
+        if "faro" in table.figures:
+            figures += half_ranges(own.p_mm)
+        for figure in figures:
+            single = Single(Labels(artefact, position), float(figure.value), standing)
+            found.setdefault(figure.definition, []).append(single)
+        points[what] = len(own.row)
+    departures = counted("seats", len(points), table.positions) + counted_each(
+        "touches of a seat", points, table.points
+    )
+    return Found(list(found.items()), departures)

@@ -1,0 +1,29 @@
+"""P_Size and P_Form: one ball touched all around, in several places."""
+
+from __future__ import annotations
+
+from ulna.files.profile_tables import SphereTest
+from ulna.files.touches import Touches
+from ulna.geometry.sphere import fit_sphere
+from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
+from ulna.verification.figures.iso_10360_12 import P_FORM, P_SIZE, probing_of
+from ulna.verification.outcome import Labels, Single
+
+
+def sphere(name: str, table: SphereTest, touches: Touches, bench: Bench) -> Found:
+    """Each artefact in each position is a measurement; the worse one stands for the figure. Raises UlnaInputError."""
+    sizes, forms, points = [], [], {}
+    for (artefact, position, repeat), own in touches.groups(("artefact", "position", "repeat")):
+        ball = bench.ball(artefact, name)
+        tip = tip_mm(own, bench.path, name)
+        what = called(ball=ball.name, position=position, repeat=repeat)
+        fitted = fit_sphere(own.p_mm, f"{own.path}: test '{name}', {what}")
+        size, form = probing_of(fitted, ball.diameter_mm, tip, ball.table.inside)
+        labels = Labels(ball.name, position, repeat=repeat)
+        value = float(size.value)
+        sizes.append(Single(labels, value, ball.size_budget, ball.diameter_mm, ball.diameter_mm + value))
+        forms.append(Single(labels, float(form.value), ball.form_budget))
+        points[what] = len(own.row)
+    departures = counted("positions of the ball", len(sizes), table.positions)
+    departures += counted_each("points on the ball", points, table.points)
+    return Found([(P_SIZE, sizes), (P_FORM, forms)], departures)
