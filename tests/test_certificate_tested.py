@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from tests import dcc_reading as reading
 
 from ulna.certificate.dcc.document import dcc_certificate
-from ulna.certificate.tested import StatedTest, StatedTests
+from ulna.certificate.tested import SingleValue, StatedTest, StatedTests
 
 HERE = Path(__file__).resolve().parent
 RESULT = HERE / "data" / "fossils" / "result-1.json"
 LABORATORY = HERE.parent / "examples" / "platinum" / "laboratory.toml"
 
-RULE = "ISO 14253-1:2017, g = 1.65 u."
-PASS = StatedTest("P_Size", "D_fit - D_cal", -0.010, "mm", 0.004, 2.0, 0.95, 0.020, 0.0033, "pass")
+RULE = "g = 1.65 u (95 %)"
+PASS = StatedTest("P_Size", "probing", "D_fit - D_cal", -0.010, "mm", 0.004, 2.0, 0.95, 0.020, 0.0033, "pass")
 #: name, |value| against a limit of 0.020 mm and a guard band of 0.0033 mm, decision, word
 WORDS = [
     ("pass", -0.010, "pass", "pass"),
@@ -31,11 +31,21 @@ VALUES = [replace(PASS, name=name, value=value, decision=said) for name, value, 
 
 
 def stated_of(*values: StatedTest) -> StatedTests:
-    return StatedTests("Acceptance test, as left", "ISO 10360-12:2016", RULE, "0.1.0", values)
+    return StatedTests(
+        "iso",
+        "as-left",
+        "ISO 10360-12:2016",
+        "From secondary sources.",
+        "1.65u",
+        2.0,
+        "0.1.0",
+        values,
+        files=[("v.json", "0")],
+    )
 
 
 def certificate(*tested: StatedTests) -> bytes:
-    return dcc_certificate(RESULT, LABORATORY, tested, "verification.json").content
+    return dcc_certificate(RESULT, LABORATORY, tested=tested).content
 
 
 @pytest.mark.parametrize(("name", "value", "decision", "word"), WORDS)
@@ -75,7 +85,7 @@ def test_the_words_follow_from_the_numbers(value: float, limit: float, guard: fl
 )
 def test_the_whole_is_as_good_as_its_worst(names: list[str], word: str | None) -> None:
     known = {test.name: test for test in VALUES}
-    known["unknown"] = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
+    known["unknown"] = replace(PASS, name="unknown", expanded=None, guard=None, decision=None)
     known["free"] = replace(PASS, name="free", limit=None, guard=None, decision=None)
     tests = stated_of(*(known[name] for name in names))
     assert tests.conformity == word
@@ -89,7 +99,7 @@ def test_the_whole_is_as_good_as_its_worst(names: list[str], word: str | None) -
 
 
 def test_what_cannot_be_decided_says_so() -> None:
-    unknown = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
+    unknown = replace(PASS, name="unknown", expanded=None, guard=None, decision=None)
     free = replace(PASS, name="free", limit=None, guard=None, decision=None)
     content = certificate(stated_of(unknown, free))
     read = reading.named(content, "unknown")
@@ -100,6 +110,39 @@ def test_what_cannot_be_decided_says_so() -> None:
     assert "No limit is specified" in texts
 
 
+SINGLES = [
+    SingleValue("bar/left/1", -0.010, 0.004, 0.020, "pass"),
+    SingleValue("bar/left/2", 0.021, 0.005, 0.020, "undecided"),
+]
+FULL = replace(
+    PASS,
+    name="E_Uni",
+    test="uni",
+    budget=[("calibration", 0.002), ("expansion", 1e-5)],
+    left_out=["the form"],
+    singles=SINGLES,
+)
+
+
+def test_single_values_and_the_budget_are_there() -> None:
+    tests = replace(stated_of(PASS, FULL), departures=["4 lengths, the profile counts 5"])
+    content = certificate(tests)
+    read = reading.named(content, "E_Uni, each value")
+    assert (read.labels, read.values, read.expanded) == (["bar/left/1", "bar/left/2"], [-0.010, 0.021], [0.004, 0.005])
+    root = reading.tree(content)
+    (words,) = root.findall(".//dcc:conformityXMLList", reading.NS)
+    assert words.text == "pass conditionalFail"
+    budget = reading.named(content, "Contributors, standard uncertainties")
+    assert (budget.labels, budget.values) == (["calibration", "expansion"], [0.002, 1e-5])
+    texts = "\n".join(root.itertext())
+    assert "Not included: the form" in texts
+    assert "4 lengths, the profile counts 5" in texts
+    names = [reading.said(each, "dcc:name") for each in root.findall(".//dcc:result", reading.NS)]
+    assert [name.get(None) for name in names][-2:] == ["probing", "uni"]
+    status = {each.text for each in root.findall(".//dcc:influenceCondition/dcc:status", reading.NS)}
+    assert status == {"afterAdjustment"}
+
+
 @pytest.mark.shared_data
 def test_it_is_valid(shared_data: Path) -> None:
     from lxml import etree
@@ -107,15 +150,16 @@ def test_it_is_valid(shared_data: Path) -> None:
     folder = shared_data / "dcc-xsd"
     if not folder.is_dir():
         pytest.skip(f"PTB's schema is not at hand: {folder} is not there")
-    unknown = replace(PASS, name="unknown", expanded=None, k=None, p=None, guard=None, decision=None)
+    unknown = replace(PASS, name="unknown", expanded=None, guard=None, decision=None)
     free = replace(PASS, name="<free> & easy", limit=None, guard=None, decision=None)
-    content = certificate(stated_of(*VALUES, unknown, free), replace(stated_of(free), title="<b>As found</b>"))
+    found = replace(stated_of(free, FULL), profile="<b>As found</b>", state="as-found", departures=["a", "b"])
+    content = certificate(stated_of(*VALUES, unknown, free), found)
     schema = reading.schema(folder)
     assert schema.validate(etree.fromstring(content)), schema.error_log
 
 
 def test_ptbs_schematron_finds_no_error() -> None:
     schematron = pytest.importorskip("dcclib.validation.schematron", reason="dcclib is an extra: ulna[dcc]")
-    found = schematron.SchematronValidator.for_dcc().validate_str(certificate(stated_of(*VALUES)).decode())
+    found = schematron.SchematronValidator.for_dcc().validate_str(certificate(stated_of(*VALUES, FULL)).decode())
     reports = [*found.failed_assertions, *found.successful_reports]
     assert [report.text for report in reports if report.role == "error"] == []

@@ -21,17 +21,39 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+State = Literal["as-found", "as-left"]
+Rule = Literal["1.65u", "U", "simple"]
+Decision = Literal["pass", "fail", "undecided"]
 Conformity = Literal["pass", "conditionalPass", "conditionalFail", "fail", "noPass"]
 
 _WORSE: tuple[Conformity, ...] = ("pass", "conditionalPass", "noPass", "conditionalFail", "fail")
 
 
 @dataclass(frozen=True)
+class SingleValue:
+    """One measurement of a figure that has many."""
+
+    label: str
+    """Which one: artefact, position, orientation, repeat."""
+    value: float
+    expanded: float | None
+    limit: float | None
+    decision: Decision | None
+
+    @property
+    def conformity(self) -> Conformity | None:
+        """The word for it; None where nothing can be said."""
+        return _word(self.value, self.limit, self.decision)
+
+
+@dataclass(frozen=True)
 class StatedTest:
-    """One test value."""
+    """One figure: its worst value, and all of them."""
 
     name: str
     """As the standard calls it: `P_Size.Sph.1x25:Tact.AArm`."""
+    test: str
+    """The test that it comes from."""
     formula: str
     """How it is computed, in words."""
     value: float
@@ -39,38 +61,68 @@ class StatedTest:
     """"mm"."""
     expanded: float | None
     """U = k u of the test value; None where it is not known."""
-    k: float | None
-    p: float | None
+    k: float
+    p: float
     limit: float | None
     """What |value| may be at the most; None where nothing is specified."""
     guard: float | None
     """g; None where the rule needs an uncertainty that is not known."""
-    decision: Literal["pass", "fail", "undecided"] | None
+    decision: Decision | None
     """None where there is no limit, or no guard band is known."""
+    budget: Sequence[tuple[str, float]] = ()
+    """Contributors to the uncertainty with their standard uncertainties, in `unit`."""
+    left_out: Sequence[str] = ()
+    """What is not among them."""
+    singles: Sequence[SingleValue] = ()
+    """In `unit`, with `k` and `p`."""
 
     @property
     def conformity(self) -> Conformity | None:
         """The word for it; None where nothing can be said."""
-        if self.limit is None or self.decision is None:
-            return None
-        if self.decision != "undecided":
-            return self.decision
-        return "conditionalPass" if abs(self.value) <= self.limit else "conditionalFail"
+        return _word(self.value, self.limit, self.decision)
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """Of the artefacts while they were measured."""
+
+    value_c: float
+    u_k: float
 
 
 @dataclass(frozen=True)
 class StatedTests:
-    """All values of one test in one state of the arm."""
+    """All figures of the arm in one state."""
 
-    title: str
-    """What was tested and how."""
+    profile: str
+    """Name of the list of what is measured."""
+    state: State
     manner: str
     """In the manner of which standard."""
-    rule: str
-    """The decision rule in words."""
+    statement: str
+    """What the profile says of that."""
+    rule: Rule
+    """The guard band of the decision rule."""
+    k: float
+    """Of the rule "U"."""
     version: str
     """Of the Ulna that computed the values."""
     values: Sequence[StatedTest]
+    departures: Sequence[str] = ()
+    """Where what was measured is not what the profile counts."""
+    temperature: Temperature | None = None
+    files: Sequence[tuple[str, str]] = ()
+    """path and SHA-256 of what the figures come from."""
+
+    @property
+    def source(self) -> str:
+        """The file that the figures stand in."""
+        return self.files[0][0] if self.files else "tests in memory"
+
+    @property
+    def title(self) -> str:
+        """In English: `iso-10360-12, as left`."""
+        return f"{self.profile}, {self.state.replace('-', ' ')}"
 
     @property
     def conformity(self) -> Conformity | None:
@@ -78,3 +130,11 @@ class StatedTests:
         of a pass."""
         words = [value.conformity or "noPass" for value in self.values if value.limit is not None]
         return max(words, key=_WORSE.index) if words else None
+
+
+def _word(value: float, limit: float | None, decision: Decision | None) -> Conformity | None:
+    if limit is None or decision is None:
+        return None
+    if decision != "undecided":
+        return decision
+    return "conditionalPass" if abs(value) <= limit else "conditionalFail"

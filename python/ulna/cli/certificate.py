@@ -21,13 +21,17 @@ def certificate(
         typer.Argument(metavar="LAB", help="The laboratory file (TOML): see --make-lab.", show_default=False),
     ] = None,
     dcc: Annotated[bool, typer.Option("--dcc", help="As XML: PTB's DCC 3.3.0.")] = False,
+    verification: Annotated[
+        list[Path] | None,
+        typer.Option("--verification", metavar="FILE", help="A verification.json of the same arm; may be repeated."),
+    ] = None,
     make_lab: Annotated[bool, typer.Option("--make-lab", help="Write a laboratory file to fill in.")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="File to write.")] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Write a digital calibration certificate: the parameters with their expanded uncertainties and covariance, what
-    was not determined, and what the laboratory file says.
+    was not determined, test values with statements of conformity, and what the laboratory file says.
 
     It is an unsigned draft: the laboratory checks it and signs it. What the laboratory file leaves out is said to be
     missing, never made up. The printed certificate comes from ulna report --pdf, from the same laboratory file.
@@ -42,10 +46,10 @@ def certificate(
     if make_lab:
         from ulna.files.laboratory_template import TEMPLATE
 
-        if result is not None or dcc or force:
+        if result is not None or dcc or force or verification:
             raise UlnaInputError(
-                "option --make-lab: writes an empty laboratory file and takes no RESULT, LAB, --dcc or --force. Leave "
-                "them out."
+                "option --make-lab: writes an empty laboratory file and takes no RESULT, LAB, --dcc, "
+                "--verification or --force. Leave them out."
             )
         write_file(out, TEMPLATE)
         _say(f"{out}: fill it in, then: ulna certificate RESULT {out} --dcc -o FILE.xml")
@@ -64,8 +68,9 @@ def certificate(
     from ulna.cli import output
     from ulna.report.certificate import certificate_report
 
-    refuse_inputs([out], [result, laboratory])
-    made = dcc_certificate(result, laboratory)
+    tests = verification or []
+    refuse_inputs([out], [result, laboratory, *tests])
+    made = dcc_certificate(result, laboratory, tests)
     write_file(out, made.content, force)
     if as_json:
         output.print_json({"file": str(out), **made.as_dict()})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import PurePath
 
 from ulna.certificate.dcc.administrative import identification
@@ -26,10 +27,8 @@ def calibration_method(sheet: Sheet, parent: Element, result: Result) -> None:
     if result.fit.loss != "none":
         search += f", {result.fit.loss}"
     extras = ", ".join(result.arm.extras)
-    described = sheet.own("method-text", search=search, effects="{effects}")
-    beyond = dict(sheet.own("effects", extras=extras)) if extras else {}
-    said = [(language, text.replace("{effects}", beyond.get(language, ""))) for language, text in described]
-    sheet.text(method, "description", said)
+    effects = sheet.own("effects", extras=extras) if extras else ""
+    sheet.text(method, "description", sheet.own("method-text", search=search, effects=effects))
 
 
 def laboratory_methods(sheet: Sheet, parent: Element, methods: list[MethodTable]) -> None:
@@ -69,12 +68,14 @@ def _certified(sheet: Sheet, certificate: str, issuer: str | None) -> Said:
     return sheet.own("certified-by", certificate=certificate, issuer=issuer)
 
 
-def influence_conditions(sheet: Sheet, parent: Element, environment: EnvironmentTable) -> None:
+def influence_conditions(
+    sheet: Sheet, parent: Element, environment: EnvironmentTable, status: str | None = None
+) -> Element:
     """`dcc:influenceConditions`: how warm and damp it was."""
     element = sheet.dcc(parent, "influenceConditions")
-    _condition(sheet, element, environment.temperature, "temperature", environment.temperature.unit, 1.0)
+    _condition(sheet, element, environment.temperature, "temperature", environment.temperature.unit, 1.0, status)
     if environment.humidity is not None:
-        _condition(sheet, element, environment.humidity, "humidity", "1", 100.0)
+        _condition(sheet, element, environment.humidity, "humidity", "1", 100.0, status)
     for key, text in (
         ("humidity", sheet.own("humidity-missing") if environment.humidity is None else None),
         ("environment", None if environment.remark is None else sheet.theirs(environment.remark)),
@@ -83,6 +84,7 @@ def influence_conditions(sheet: Sheet, parent: Element, environment: Environment
             condition = sheet.dcc(element, "influenceCondition")
             sheet.text(condition, "name", sheet.own(key))
             sheet.text(sheet.dcc(condition, "data"), "text", text)
+    return element
 
 
 def _condition(
@@ -92,10 +94,13 @@ def _condition(
     key: str,
     unit: str,
     divisor: float,
+    status: str | None,
 ) -> None:
     ref = {"temperature": "basic_temperature", "humidity": "basic_humidityRelative"}[key]
     element = sheet.dcc(parent, "influenceCondition", ref=ref)
     sheet.text(element, "name", sheet.own(key))
+    if status is not None:
+        sheet.dcc(element, "status", status)
     data = sheet.dcc(element, "data")
     if condition.value is not None and condition.u is not None:
         one = quantity(sheet, data, sheet.own(key), ref)
@@ -108,18 +113,17 @@ def _condition(
         real(sheet, one, value / divisor, unit)
 
 
-def input_files(sheet: Sheet, parent: Element, result: Result, result_sha256: str) -> None:
-    """`dcc:measurementMetaData`: from what files the result was made, by name and SHA-256."""
-    files = [("result.json", result_sha256)]
-    files += [(PurePath(entry["path"]).name, entry["sha256"]) for entry in result.provenance["files"]]
-    data = sheet.dcc(sheet.dcc(parent, "measurementMetaData"), "metaData")
+def input_files(sheet: Sheet, parent: Element, files: Sequence[tuple[str, str]]) -> None:
+    """A dcc:metaData: from what files (path, SHA-256) something was made; by their names alone."""
+    data = sheet.dcc(parent, "metaData")
     sheet.text(data, "name", sheet.own("inputs"))
     content = sheet.dcc(data, "data")
-    for name, sha256 in files:
-        sheet.text(content, "text", sheet.theirs(f"{name}, SHA-256 {sha256}"))
+    for path, sha256 in files:
+        sheet.text(content, "text", sheet.theirs(f"{PurePath(path).name}, SHA-256 {sha256}"))
 
 
-def laboratory_conditions(sheet: Sheet, parent: Element, file: LaboratoryFile) -> None:
-    """Standards and environment, in the order that the schema wants."""
+def laboratory_conditions(sheet: Sheet, parent: Element, file: LaboratoryFile, status: str | None = None) -> Element:
+    """Standards and environment, in the order that the schema wants; status: `beforeAdjustment` and the like. The
+    element of the conditions is handed back for more."""
     equipment(sheet, parent, file.equipment)
-    influence_conditions(sheet, parent, file.environment)
+    return influence_conditions(sheet, parent, file.environment, status)

@@ -23,6 +23,7 @@ from ulna.certificate.dcc.tested import conformity_statements, tests_result
 from ulna.certificate.source import certified_result
 from ulna.certificate.stated import StatedParameters
 from ulna.certificate.tested import StatedTests
+from ulna.certificate.verified import stated_tests
 from ulna.files.laboratory import Laboratory, load_laboratory
 from ulna.files.laboratory_tables import LaboratoryFile
 from ulna.result import Result
@@ -74,18 +75,28 @@ class Certificate:
 
 
 def dcc_certificate(
-    result: str | Path, laboratory: str | Path, tested: Sequence[StatedTests] = (), tested_in: str = ""
+    result: str | Path,
+    laboratory: str | Path,
+    verification: Sequence[str | Path] = (),
+    tested: Sequence[StatedTests] = (),
 ) -> Certificate:
     """A DCC 3.3.0 of a result.json (or its folder) and a laboratory file. It is an unsigned draft.
 
-    tested: tests of the same arm; tested_in: the file that they stand in.
-
-    Raises UlnaInputError, also for a calibration that did not converge and for texts that XML cannot hold.
+    verification: files that `ulna verify` wrote, of the same arm; tested: further tests. Raises UlnaInputError, also
+    for a calibration that did not converge, tests of another arm, and texts that XML cannot hold.
     """
     path = Path(result)
     path = path / "result.json" if path.is_dir() else path
     known = load_laboratory(laboratory)
     found, stated, result_sha256 = certified_result(path)
+    tested = [
+        *(
+            tests
+            for each in verification
+            for tests in stated_tests(Path(each), found, path, result_sha256, known.file.item)
+        ),
+        *tested,
+    ]
     languages = tuple(known.file.languages)
     root: Element = etree.Element(f"{{{DCC}}}digitalCalibrationCertificate", nsmap={**NAMES, "xsi": _XSI})
     root.set("schemaVersion", VERSION)
@@ -93,12 +104,12 @@ def dcc_certificate(
     of_laboratory, of_result = Sheet(languages, str(known.path)), Sheet(languages, str(path))
     data = administrative_data(of_laboratory, root, known)
     statements(of_result, of_result.dcc(data, "statements"), known, found, stated)
-    of_tests = Sheet(languages, tested_in)
-    conformity_statements(of_tests, data[-1], tested)
+    for tests in tested:
+        conformity_statements(Sheet(languages, tests.source), data[-1], tests)
     measured = of_result.dcc(root, "measurementResults")
     _calibration(of_result, of_laboratory, measured, found, stated, known, result_sha256)
     for tests in tested:
-        tests_result(of_tests, of_laboratory, measured, tests, known.file)
+        tests_result(Sheet(languages, tests.source), of_laboratory, measured, tests, known.file)
     etree.indent(root)
     content = bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8")) + b"\n"
     return Certificate(content, known.file.certificate.identifier, stated, list(tested), _missing(known.file))
@@ -124,7 +135,8 @@ def _calibration(
     results.parameters(sheet, written, found, stated)
     results.fit(sheet, written, found)
     results.figures(sheet, written, found)
-    input_files(sheet, calibration, found, result_sha256)
+    files = [("result.json", result_sha256)] + [(file["path"], file["sha256"]) for file in found.provenance["files"]]
+    input_files(sheet, sheet.dcc(calibration, "measurementMetaData"), files)
 
 
 def _missing(file: LaboratoryFile) -> list[str]:

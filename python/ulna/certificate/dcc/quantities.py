@@ -27,8 +27,8 @@ class Expanded:
     """Each in the unit of its value."""
     k: float
     p: float
-    distribution: str
-    """"normal" or "t"."""
+    distribution: str | None = None
+    """"normal" or "t", where it is known."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,8 @@ def real_list(
         sheet.si(univariate, "valueExpandedMUXMLList", " ".join(number(value) for value in expanded.values))
         sheet.si(univariate, "coverageFactorXMLList", plain(expanded.k))
         sheet.si(univariate, "coverageProbabilityXMLList", plain(expanded.p))
-        sheet.si(univariate, "distributionXMLList", expanded.distribution)
+        if expanded.distribution is not None:
+            sheet.si(univariate, "distributionXMLList", expanded.distribution)
     if region is not None:
         _region(sheet, element, region, units)
 

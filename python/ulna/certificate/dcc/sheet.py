@@ -61,10 +61,11 @@ class Sheet:
 
     def own(self, key: str, **values: object) -> Said:
         """One of Ulna's own texts, in every language of the certificate where Ulna speaks them all, else in English
-        without a mark of language: a certificate may not mark some of its languages and leave out others."""
+        without a mark of language: a certificate may not mark some of its languages and leave out others. A value may
+        be such a text itself."""
         if set(self.languages) <= set(OWN_LANGUAGES):
-            return [(language, words(key, language, **values)) for language in self.languages]
-        return [(None, words(key, "en", **values))]
+            return [(language, words(key, language, **_in(language, values))) for language in self.languages]
+        return [(None, words(key, "en", **_in(None, values)))]
 
     def theirs(self, text: str | dict[str, str]) -> Said:
         """A text of the laboratory file. A string belongs to all languages, so where there are several it is not
@@ -81,3 +82,8 @@ class Sheet:
             if language is not None:
                 content.set("lang", language)
         return element
+
+
+def _in(language: str | None, values: dict[str, object]) -> dict[str, object]:
+    """Values that are texts of several languages, in this one."""
+    return {name: dict(value)[language] if isinstance(value, list) else value for name, value in values.items()}

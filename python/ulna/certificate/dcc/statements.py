@@ -46,15 +46,12 @@ def _laboratory(sheet: Sheet, parent: Element, laboratory: Laboratory) -> None:
 def _uncertainty(sheet: Sheet, stated: StatedParameters) -> Said:
     known = math.isinf(stated.degrees_of_freedom)
     freedom = f"{stated.degrees_of_freedom:g}"
-    distribution = dict(sheet.own("normal") if known else sheet.own("student", freedom=freedom))
-    noise = dict(sheet.own("noise-stated" if known else "noise-estimated"))
-    said: Said = []
-    for language, _ in sheet.own("uncertainty-name"):
-        ((_, text),) = Sheet((language or "en",), sheet.source).own(
-            "uncertainty", distribution=distribution[language], noise=noise[language], p=f"{100 * stated.p:g} %"
-        )
-        said.append((language, text))
-    return said
+    return sheet.own(
+        "uncertainty",
+        distribution=sheet.own("normal") if known else sheet.own("student", freedom=freedom),
+        noise=sheet.own("noise-stated" if known else "noise-estimated"),
+        p=f"{100 * stated.p:g} %",
+    )
 
 
 def _not_determined(sheet: Sheet, parent: Element, result: Result, stated: StatedParameters) -> None:

@@ -14,9 +14,33 @@ TESTS: dict[str, tuple[str, str, str]] = {
         "behauptet.",
         "各值按其说明计算。此处不声明遵循了该标准的条文。",
     ),
-    "test-values": ("Test values", "Prüfwerte", "检验值"),
+    "singles": ("{name}, each value", "{name}, jeder Wert", "{name}，各值"),
+    "departures": ("Departures from the profile", "Abweichungen vom Profil", "与检验方案的偏离"),
+    "budget": ("Uncertainty of the test value", "Unsicherheit des Prüfwerts", "检验值的不确定度"),
+    "contributors": (
+        "Contributors, standard uncertainties",
+        "Beiträge, Standardunsicherheiten",
+        "各分量的标准不确定度",
+    ),
+    "left-out": ("Not included: {what}", "Nicht enthalten: {what}", "未包括：{what}"),
     "conformity": ("Statement of conformity", "Konformitätsaussage", "符合性声明"),
-    "rule": ("Decision rule", "Entscheidungsregel", "判定规则"),
+    "rule": (
+        "Decision rule, in the manner of ISO 14253-1: pass where |value| ≤ limit - g, fail where |value| > "
+        "limit + g, else "
+        "undecided; {guard}. u is of the test value, not of the arm.",
+        "Entscheidungsregel in der Art von ISO 14253-1: bestanden bei |Wert| ≤ Grenze - g, nicht bestanden bei "
+        "|Wert| > "
+        "Grenze + g, sonst unentschieden; {guard}. u gehört zum Prüfwert, nicht zum Arm.",
+        "判定规则，按 ISO 14253-1 的方式：|值| ≤ 限值 - g 为合格，|值| > 限值 + g 为不合格，否则未决；{guard}。"
+        "u 为检验值的标准不确定度，"
+        "而非测量臂的。",
+    ),
+    "guard-1.65u": ("g = 1.65 u (95 %)", "g = 1,65 u (95 %)", "g = 1.65 u（95 %）"),
+    "guard-U": ("g = U = {k} u", "g = U = {k} u", "g = U = {k} u"),
+    "guard-simple": ("g = 0, simple acceptance", "g = 0, einfache Annahme", "g = 0，简单接受"),
+    "title-as-found": ("Test {profile}, as found", "Prüfung {profile}, wie vorgefunden", "检验 {profile}，调整前"),
+    "title-as-left": ("Test {profile}, as left", "Prüfung {profile}, wie übergeben", "检验 {profile}，调整后"),
+    "artefact-temperature": ("Temperature of the artefacts", "Temperatur der Normale", "标准器温度"),
     "limit": ("Limit of the magnitude", "Grenze des Betrags", "绝对值限值"),
     "guard": ("Guard band", "Schutzband", "保护带"),
     "says-pass": (
@@ -59,25 +83,31 @@ TESTS: dict[str, tuple[str, str, str]] = {
         "Es ist keine Grenze vorgegeben: Zur Konformität wird nichts gesagt.",
         "未规定限值：不作符合性声明。",
     ),
-    "whole-pass": ("{title}: all values conform.", "{title}: Alle Werte sind konform.", "{title}：所有值均符合。"),
+    "whole-pass": (
+        "{title}: all values conform. {rule}",
+        "{title}: Alle Werte sind konform. {rule}",
+        "{title}：所有值均符合。{rule}",
+    ),
     "whole-fail": (
-        "{title}: at least one value does not conform.",
-        "{title}: Mindestens ein Wert ist nicht konform.",
-        "{title}：至少一个值不符合。",
+        "{title}: at least one value does not conform. {rule}",
+        "{title}: Mindestens ein Wert ist nicht konform. {rule}",
+        "{title}：至少一个值不符合。{rule}",
     ),
     "whole-conditionalPass": (
-        "{title}: undecided; no value is above its limit, but not all are below it by the guard band.",
-        "{title}: unentschieden; kein Wert liegt über seiner Grenze, aber nicht alle um das Schutzband darunter.",
-        "{title}：未决；没有值超出限值，但并非所有值均以保护带之差低于限值。",
+        "{title}: undecided; no value is above its limit, but not all are below it by the guard band. {rule}",
+        "{title}: unentschieden; kein Wert liegt über seiner Grenze, aber nicht alle um das Schutzband "
+        "darunter. {rule}",
+        "{title}：未决；没有值超出限值，但并非所有值均以保护带之差低于限值。{rule}",
     ),
     "whole-conditionalFail": (
-        "{title}: undecided; at least one value is above its limit, none by more than the guard band.",
-        "{title}: unentschieden; mindestens ein Wert liegt über seiner Grenze, keiner um mehr als das Schutzband.",
-        "{title}：未决；至少一个值超出限值，但均未超出保护带。",
+        "{title}: undecided; at least one value is above its limit, none by more than the guard band. {rule}",
+        "{title}: unentschieden; mindestens ein Wert liegt über seiner Grenze, keiner um mehr als das "
+        "Schutzband. {rule}",
+        "{title}：未决；至少一个值超出限值，但均未超出保护带。{rule}",
     ),
     "whole-noPass": (
-        "{title}: conformity is not shown; not every value with a limit could be decided.",
-        "{title}: Konformität ist nicht nachgewiesen; nicht jeder Wert mit einer Grenze ließ sich entscheiden.",
-        "{title}：未证明符合；并非每个有限值的量都能判定。",
+        "{title}: conformity is not shown; not every value with a limit could be decided. {rule}",
+        "{title}: Konformität ist nicht nachgewiesen; nicht jeder Wert mit einer Grenze ließ sich entscheiden. {rule}",
+        "{title}：未证明符合；并非每个有限值的量都能判定。{rule}",
     ),
 }

@@ -1,0 +1,137 @@
+"""The tests of a verification.json as a certificate states them, and whether they are of the arm it is about."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import NoReturn
+
+from ulna.certificate.tested import SingleValue, StatedTest, StatedTests, Temperature
+from ulna.errors import UlnaInputError
+from ulna.files.laboratory_tables import ItemTable
+from ulna.files.toml import read_bytes, sha256
+from ulna.files.verification import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
+from ulna.result import Result
+
+#: rounding that is forgiven
+_SLACK = 1e-9
+
+
+def stated_tests(
+    path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
+) -> list[StatedTests]:
+    """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
+    file, digest = load_verification(path)
+    _check_arm(file, path, result, result_path, result_sha256, item)
+    return [_state(file, state, path, digest) for state in file.states]
+
+
+def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
+    made = file.provenance
+    stated = file.environment.get("temperature")
+    files = [(path.name, digest)]
+    for entry in (made.get("plan"), made.get("arm_file"), *made.get("files", [])):
+        if isinstance(entry, dict) and entry.get("state", state.state) == state.state:
+            files.append((str(entry.get("path")), str(entry.get("sha256"))))
+    return StatedTests(
+        profile=file.profile.name,
+        state=state.state,
+        manner=file.profile.standard,
+        statement=file.profile.statement,
+        rule=file.decision.rule,
+        k=file.decision.k,
+        version=str(made.get("version", "")),
+        values=[_figure(path, test.name, figure) for test in state.tests for figure in test.figures],
+        departures=[*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)],
+        temperature=None if stated is None else Temperature(float(stated["value"]), float(stated["u"])),
+        files=files,
+    )
+
+
+def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
+    for each in (figure, *figure.individual):
+        _check_verdict(path, figure.name, each)
+    if (figure.u is None) != (figure.expanded is None) or (
+        figure.u is not None
+        and figure.expanded is not None
+        and not math.isclose(figure.expanded, figure.k * figure.u, rel_tol=_SLACK)
+    ):
+        _damaged(path, figure.name, "expanded is not k times u")
+    return StatedTest(
+        name=figure.name,
+        test=test,
+        formula=figure.formula,
+        value=figure.value,
+        unit=figure.unit,
+        expanded=figure.expanded,
+        k=figure.k,
+        p=figure.p,
+        limit=figure.limit,
+        guard=figure.guard,
+        decision=figure.verdict,
+        budget=[(part.name, part.u) for part in figure.budget],
+        left_out=figure.left_out,
+        singles=[_single(value, figure.k) for value in figure.individual],
+    )
+
+
+def _single(value: ValueTable, k: float) -> SingleValue:
+    labels = (value.artefact, value.position, value.orientation, value.repeat)
+    label = "/".join(each for each in labels if each)
+    return SingleValue(label, value.value, None if value.u is None else k * value.u, value.limit, value.verdict)
+
+
+def _check_verdict(path: Path, name: str, each: FigureTable | ValueTable) -> None:
+    """A certificate states no verdict that its numbers do not bear out. Raises UlnaInputError."""
+    if each.verdict is None:
+        return
+    if each.limit is None or each.guard is None:
+        _damaged(path, name, f"it has the verdict {each.verdict}, but no limit or no guard band")
+    size, slack = abs(each.value), _SLACK * each.limit
+    good = {
+        "pass": size <= each.limit - each.guard + slack,
+        "fail": size > each.limit + each.guard - slack,
+        "undecided": each.limit - each.guard - slack < size <= each.limit + each.guard + slack,
+    }
+    if not good[each.verdict]:
+        _damaged(
+            path,
+            name,
+            f"the verdict is {each.verdict}, but {each.value:g} mm with the limit {each.limit:g} mm and the guard band "
+            f"{each.guard:g} mm is not",
+        )
+
+
+def _damaged(path: Path, name: str, what: str) -> NoReturn:
+    raise UlnaInputError(f"{path}: figure {name}: {what}. The file was changed or damaged: verify again.")
+
+
+def _check_arm(
+    file: VerificationFile, path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
+) -> None:
+    """Tests by encoder readings name the arm file that they were computed with: for as-left readings it must be this
+    result, or the arm.toml beside it; as-found readings may also be computed with an arm that this calibration started
+    from. Tests by coordinates name the arm: its serial number must be in it. Raises UlnaInputError."""
+    used = file.provenance.get("arm_file")
+    if not isinstance(used, dict):
+        if re.search(rf"(?<!\w){re.escape(item.serial)}(?!\w)", file.arm) or file.arm == result.arm.name:
+            return
+        raise UlnaInputError(
+            f"{path}: key 'arm': these tests are of '{file.arm}', the certificate is about serial number "
+            f"'{item.serial}'; expected that number in the name of the arm. Name the right file, or write the serial "
+            "number into the key arm of the verify file and verify again."
+        )
+    calibrated = {result_sha256}
+    beside = result_path.parent / "arm.toml"
+    if beside.is_file():
+        calibrated.add(sha256(read_bytes(beside, "an arm file")))
+    before = {str(entry["sha256"]) for entry in result.provenance["files"]}
+    for state in file.states:
+        known = calibrated if state.state == "as-left" else calibrated | before
+        if used.get("sha256") not in known:
+            raise UlnaInputError(
+                f"{path}: key 'provenance.arm_file': the {state.state} values were computed with {used.get('path')}, "
+                f"which is another arm than that of {result_path}; expected tests of this calibration. Verify again "
+                f"with: ulna verify {result_path} PLAN"
+            )
