@@ -36,6 +36,10 @@ def report(
     evaluation: Annotated[
         Path | None, typer.Option("--evaluation", metavar="FILE", help="An evaluation.json: readings held out.")
     ] = None,
+    verification: Annotated[
+        Path | None,
+        typer.Option("--verification", metavar="FILE", help="A verification.json: the acceptance test, MPE."),
+    ] = None,
     laboratory: Annotated[
         Path | None,
         typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
@@ -59,9 +63,9 @@ def report(
     one_of("--language", language, LANGUAGES)
     formats = ["html"] if as_html else []
     wanted = targets(out, formats or ["html"], force)
-    content = gather(result, study, cross_validation, evaluation, laboratory)
+    content = gather(result, study, cross_validation, evaluation, laboratory, verification)
     files = [result / "result.json" if result.is_dir() else result]
-    files += [path for path in (study, cross_validation, evaluation, laboratory) if path is not None]
+    files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
     write_report(content, wanted, language, files, force)
     for said in content.missing.values():
         if said.key == "study.changed":

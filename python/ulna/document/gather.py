@@ -26,6 +26,7 @@ from ulna.document.distribution import samples
 from ulna.document.known import observability, parameters
 from ulna.document.quality import held_out, quality_rows, residual_row
 from ulna.document.source import find_study
+from ulna.document.tested import verification
 from ulna.evaluate import study_of_arm
 from ulna.files.laboratory import load_laboratory
 from ulna.files.toml import read_bytes, sha256
@@ -39,16 +40,19 @@ def gather(
     cross_validation: Path | None = None,
     evaluation: Path | None = None,
     laboratory: Path | None = None,
+    verified: Path | None = None,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
     result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
     longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
-    calibrated for whom, with what.
+    calibrated for whom, with what. verified: what `ulna verify` wrote.
     """
     named = None if laboratory is None else load_laboratory(laboratory)
     path = result / "result.json" if result.is_dir() else result
     found = Result.load(path)
+    digest = sha256(read_bytes(path, "a result.json"))
+    test = None if verified is None else verification(verified, found.arm, path, digest)
     source, files, no_study = find_study(found, path, study)
     rows, said = held_out(found, source, cross_validation, evaluation)
     missing = {} if no_study is None else {"study": no_study}
@@ -59,6 +63,8 @@ def gather(
         fitted = study_of_arm(source, found.arm)
         over, quiver = clouds(fitted, found.arm, found.residuals)
         lengths = _lengths(source, found)
+    if test is None:
+        missing["verification"] = Said("missing.verification")
     if named is None:
         missing["laboratory"] = Said("missing.laboratory")
     missing |= _missing(found, source, over, quiver, lengths, rows)
@@ -83,7 +89,7 @@ def gather(
         environment=_environment(made, source),
         outliers=found.outliers,
         extras=found.extras,
-        verification=None,
+        verification=test,
         laboratory=named,
         missing=missing,
         provenance=Provenance(
@@ -93,7 +99,7 @@ def gather(
             seed=int(made.get("seed", 0)),
             study=made.get("study"),
             result=path.name,
-            result_sha256=sha256(read_bytes(path, "a result.json")),
+            result_sha256=digest,
             files=files,
             options=dict(made.get("options", {})),
             warnings=[str(text) for text in made.get("warnings", [])],
@@ -127,7 +133,6 @@ def _missing(
         missing["correlation"] = Said("missing.correlation")
     if observability(result) is None:
         missing["observability"] = Said("missing.observability")
-    missing["verification"] = Said("missing.verification")
     return missing
 
 

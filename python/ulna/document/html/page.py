@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib import resources
 
 from ulna.document.content import Content
-from ulna.document.html import laboratory, summary, tables
+from ulna.document.html import laboratory, summary, tables, verification
 from ulna.document.html.markup import (
     json_in_script,
     paragraph,
@@ -75,7 +75,7 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         )
 
     def grid(figures: Sequence[str]) -> str:
-        return f'<div class="grid">\n{"".join(figures)}</div>\n'
+        return f'<div class="grid">\n{"".join(figures)}</div>\n' if figures else ""
 
     def lacks(*keys: str) -> str:
         return "".join(paragraph(words.say(content.missing[key]), "missing") for key in keys if key in content.missing)
@@ -119,9 +119,16 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         + lacks("observability"),
         "lengths": (figure(length_plot(content.lengths, words, labels)) if content.lengths is not None else "")
         + lacks("study", "lengths", "verification"),
+        "verification": verification.verification(content, words)
+        + grid(
+            [
+                figure(verification.tested_lengths_plot(number, each, words, labels))
+                for number, each in enumerate(content.verification.lengths if content.verification else [])
+            ]
+        ),
         "artefacts": tables.artefact_table(content, words) + lacks("study"),
         "environment": laboratory.conditions(content, words) + _environment(content, words),
-        "decision": paragraph(words("decision.none")),
+        "decision": verification.decision(content, words),
         "traceability": laboratory.traceability(content, words) + lacks("laboratory"),
         "outliers": tables.outlier_table(content, words),
         "placements": tables.placement_table(content, words),

@@ -1,0 +1,60 @@
+"""The acceptance test of a report: read, and whether it is of this arm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ulna.document.content import Said, TestedLengths, Verification
+from ulna.files.toml import read_bytes, sha256
+from ulna.files.verification import TestedTable, load_verification
+from ulna.model import Arm
+
+
+def verification(path: Path, arm: Arm, result: Path, result_sha256: str) -> Verification:
+    """What `ulna verify` found, with its length errors as arrays. Raises UlnaInputError.
+
+    A test of encoder readings names the arm file that turned them into points: this result, or the arm.toml beside it.
+    A test of coordinates only names the arm. Where that is not this one, it is said.
+    """
+    file, digest = load_verification(path)
+    remarks = []
+    used = file.provenance.get("arm_file")
+    if isinstance(used, dict):
+        beside = result.parent / "arm.toml"
+        ours = {result_sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
+        if used.get("sha256") not in ours:
+            remarks.append(Said("verification.other-arm", {"file": path.name, "arm": str(used.get("path"))}))
+    elif file.arm != arm.name:
+        remarks.append(Said("verification.by-name", {"file": path.name, "arm": file.arm}))
+    lengths = [
+        _lengths(state.state, test)
+        for state in file.states
+        for test in state.tests
+        if test.figures and any(value.measured is not None for value in test.figures[0].individual)
+    ]
+    return Verification(path.name, digest, file, remarks, lengths)
+
+
+def _lengths(state: str, test: TestedTable) -> TestedLengths:
+    """Of a test's first figure, whose single values are length errors."""
+    figure = test.figures[0]
+    values = [value for value in figure.individual if value.calibrated is not None]
+    terms = figure.limit_terms
+
+    def of(name: str) -> list[float]:
+        return [np.nan if getattr(value, name) is None else getattr(value, name) for value in values]
+
+    return TestedLengths(
+        state=state,
+        test=test.name,
+        figure=figure.name,
+        length_mm=np.array(of("calibrated")),
+        error_mm=np.array([value.value for value in values]),
+        limit_mm=np.array(of("limit")),
+        guard_mm=np.array(of("guard")),
+        verdict=[value.verdict for value in values],
+        a_mm=None if terms is None else terms.a,
+        b=None if terms is None else terms.b,
+    )
