@@ -11,6 +11,9 @@ from ulna.files.toml import read_bytes, sha256
 from ulna.files.verification import TestedTable, load_verification
 from ulna.model import Arm
 
+LENGTHS = ("length", "volumetric")
+"""Kinds of tests whose first figure is of length errors."""
+
 
 def verification(path: Path, arm: Arm, result: Path, result_sha256: str) -> Verification:
     """What `ulna verify` found, with its length errors as arrays. Raises UlnaInputError.
@@ -32,7 +35,7 @@ def verification(path: Path, arm: Arm, result: Path, result_sha256: str) -> Veri
         _lengths(state.state, test)
         for state in file.states
         for test in state.tests
-        if test.figures and any(value.measured is not None for value in test.figures[0].individual)
+        if test.kind in LENGTHS and test.figures
     ]
     return Verification(path.name, digest, file, remarks, lengths)
 

@@ -125,7 +125,8 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
                 figure(verification.tested_lengths_plot(number, each, words, labels))
                 for number, each in enumerate(content.verification.lengths if content.verification else [])
             ]
-        ),
+        )
+        + verification.details(content, words),
         "artefacts": tables.artefact_table(content, words) + lacks("study"),
         "environment": laboratory.conditions(content, words) + _environment(content, words),
         "decision": verification.decision(content, words),
@@ -167,7 +168,8 @@ def _environment(content: Content, words: Words) -> str:
         said.append((words("environment.seat", seat=f"{found.seat_mm:g}"), ""))
     if not found.encoder_rad and found.seat_mm is None:
         said.append((words("environment.no-noise"), "missing"))
-    said.append((words("environment.else"), "note"))
+    if content.laboratory is None or content.laboratory.file.environment.humidity is None:
+        said.append((words("environment.else"), "note"))
     return "".join(paragraph(each, kind) for each, kind in said)
 
 

@@ -17,20 +17,19 @@ MARKS = {"pass": (MAIN, "circle"), "undecided": (SECOND, "diamond"), "fail": (OU
 
 
 def verification(content: Content, words: Words) -> str:
-    """Figures, formulas, departures, single values; nothing where there is no test."""
+    """Figures with their verdicts, and departures; nothing where there is no test."""
     found = content.verification
     if found is None:
         return ""
     file = found.file
     page = paragraph(f'<span lang="en">{name(file.profile.statement)}</span>')
     page += "".join(paragraph(words.say(each), "missing") for each in found.remarks)
-    rows, formulas = [], {}
+    rows = []
     for state in file.states:
         for test in state.tests:
             for figure in test.figures:
                 rows.append(_figure(state.state, test, figure, words))
-                formulas[figure.name] = figure.formula
-    keys = ("condition", "figure", "verdict", "value-mm", "limit-mm", "u-mm", "expanded-mm", "guard-mm", "count")
+    keys = ("condition", "figure", "verdict", "value-mm", "limit-mm", "u-mm", "expanded-mm", "guard-mm", "values")
     label = words("section.verification")
     page += table([words(f"column.{key}") for key in keys], rows, label, left=3)
     page += paragraph(words("verification.note", k=f"{file.decision.k:g}", p=f"{100 * file.decision.p:g}"), "note")
@@ -40,8 +39,18 @@ def verification(content: Content, words: Words) -> str:
             listed = "".join(f'<li lang="en">{name(each)}</li>\n' for each in said)
             title = words("verification.departures", state=words(f"state.{state.state}"))
             page += f"{paragraph(title, 'missing')}<ul>\n{listed}</ul>\n"
+    return page
+
+
+def details(content: Content, words: Words) -> str:
+    """Formulas, what the uncertainties leave out, every single value."""
+    found = content.verification
+    if found is None:
+        return ""
+    figures = [figure for state in found.file.states for test in state.tests for figure in test.figures]
+    formulas = {figure.name: figure.formula for figure in figures}
     listed = "".join(f'<dt>{name(key)}</dt><dd lang="en">{name(formula)}</dd>\n' for key, formula in formulas.items())
-    page += f"<h3>{words('verification.formulas')}</h3>\n<dl>{listed}</dl>\n"
+    page = f"<h3>{words('verification.formulas')}</h3>\n<dl>{listed}</dl>\n"
     return page + _left_out(found, words) + _singles(found, words)
 
 
@@ -66,8 +75,8 @@ def _figure(state: str, test: TestedTable, figure: FigureTable, words: Words) ->
 
 def _left_out(found: Verification, words: Words) -> str:
     """What no uncertainty of a test value holds."""
-    tests = [test for state in found.file.states for test in state.tests]
-    said = dict.fromkeys(each for test in tests for figure in test.figures for each in figure.left_out)
+    figures = [figure for state in found.file.states for test in state.tests for figure in test.figures]
+    said = dict.fromkeys(each for figure in figures for each in figure.left_out)
     if not said:
         return ""
     listed = "".join(f'<li lang="en">{name(each)}</li>\n' for each in said)
@@ -107,7 +116,7 @@ def decision(content: Content, words: Words) -> str:
     if found is None:
         return paragraph(words("decision.none"))
     file = found.file
-    page = paragraph(words(f"decision.rule-{file.decision.rule}", k=f"{file.decision.k:g}"))
+    page = paragraph(words(f"rule.{file.decision.rule}", k=f"{file.decision.k:g}"))
     verdict = words(f"conformity.{file.verdict or 'none'}")
     kind = {"pass": "ending", "fail": "ending bad", "undecided": "missing", None: "missing"}[file.verdict]
     return page + paragraph(words("decision.whole", verdict=verdict), kind)
@@ -144,7 +153,7 @@ def _limits(found: TestedLengths, words: Words) -> list[dict[str, object]]:
     x = np.concatenate([[max(low - margin, 0.0)], at, [high + margin]])
     guard = np.nan_to_num(found.guard_mm[first])
     guard = np.concatenate([guard[:1], guard, guard[-1:]])
-    limit = found.a_mm + (0.0 if found.b is None else x / found.b)
+    limit = np.full(len(x), found.a_mm) if found.b is None else found.a_mm + x / found.b
     data: list[dict[str, object]] = []
     for side in (1.0, -1.0):
         shown = {"showlegend": side > 0.0}
