@@ -182,7 +182,12 @@ DAMAGED: dict[str, tuple[dict[str, Any], str]] = {
     "a verdict without limit": (figure("E_Uni", 0.01, "pass", limit=None), "no limit or no guard band"),
     "another U": (figure("E_Uni", 0.01, "pass", expanded=0.001), "figure E_Uni: expanded is not k times u"),
     "U of nothing": (figure("E_Uni", 0.01, "pass", u=None), "expanded is not k times u"),
-    "a text": (figure("E_Uni", 0.01, "pass", value="0.01"), "'states.1.tests.1.figures.1.value'"),
+    "a negative uncertainty": (
+        figure("E_Uni", 0.01, None, limit=None, u=-0.001, expanded=-0.002),
+        "the uncertainty is -0.001 mm with k = 2",
+    ),
+    "no probability": (figure("E_Uni", 0.01, "pass", p=1.5), "k = 2 and p = 1.5 are no coverage factor"),
+    "a text": (figure("E_Uni", 0.01, "pass") | {"value": "0.01"}, "'states.1.tests.1.figures.1.value'"),
 }
 
 
@@ -193,6 +198,18 @@ def test_no_verdict_that_the_numbers_do_not_bear_out(made: Made, case: str) -> N
         made(verification(state("as-left", figures)))
     assert "verification-0.json" in str(caught.value)
     assert expected in str(caught.value)
+
+
+def test_a_state_without_figures(made: Made) -> None:
+    with pytest.raises(UlnaInputError, match=r"state 'as-left' has no figure"):
+        made(verification(state("as-left")))
+
+
+def test_a_temperature_that_is_none(made: Made) -> None:
+    document = verification()
+    document["environment"]["temperature"] = {"value": "warm", "u": 0.1}
+    with pytest.raises(UlnaInputError, match=r"verification-0\.json: key 'temperature\.value': got 'warm'"):
+        made(document)
 
 
 def test_it_is_valid(made: Made, shared_data: Path) -> None:

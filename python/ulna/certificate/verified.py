@@ -5,17 +5,35 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
+from pydantic import Field
+
+from ulna.certificate.source import MOST
 from ulna.certificate.tested import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.errors import UlnaInputError
 from ulna.files.laboratory_tables import ItemTable
+from ulna.files.models import fill
+from ulna.files.result import Open
 from ulna.files.toml import read_bytes, sha256
 from ulna.files.verification import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
 from ulna.result import Result
 
 #: rounding that is forgiven
 _SLACK = 1e-9
+
+
+class _ArtefactTemperature(Open):
+    """Of the artefacts, °C and K."""
+
+    value: float
+    u: Annotated[float, Field(ge=0)]
+
+
+class _Environment(Open):
+    """What holds for all tests of a file."""
+
+    temperature: _ArtefactTemperature | None = None
 
 
 def stated_tests(
@@ -28,8 +46,10 @@ def stated_tests(
 
 
 def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
+    if not any(test.figures for test in state.tests):
+        raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
     made = file.provenance
-    stated = file.environment.get("temperature")
+    stated = fill(_Environment, file.environment, path).temperature
     files = [(path.name, digest)]
     for entry in (made.get("plan"), made.get("arm_file"), *made.get("files", [])):
         if isinstance(entry, dict) and entry.get("state", state.state) == state.state:
@@ -44,14 +64,19 @@ def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -
         version=str(made.get("version", "")),
         values=[_figure(path, test.name, figure) for test in state.tests for figure in test.figures],
         departures=[*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)],
-        temperature=None if stated is None else Temperature(float(stated["value"]), float(stated["u"])),
+        temperature=None if stated is None else Temperature(stated.value, stated.u),
         files=files,
     )
 
 
 def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
-    for each in (figure, *figure.individual):
+    verdicts: list[FigureTable | ValueTable] = [figure, *figure.individual]
+    for each in verdicts:
         _check_verdict(path, figure.name, each)
+        if each.u is not None and not 0.0 <= figure.k * each.u <= MOST:
+            _damaged(path, figure.name, f"the uncertainty is {each.u:g} mm with k = {figure.k:g}")
+    if not (1.0 <= figure.k <= MOST and 0.0 < figure.p < 1.0):
+        _damaged(path, figure.name, f"k = {figure.k:g} and p = {figure.p:g} are no coverage factor and probability")
     if (figure.u is None) != (figure.expanded is None) or (
         figure.u is not None
         and figure.expanded is not None
@@ -129,7 +154,7 @@ def _check_arm(
     before = {str(entry["sha256"]) for entry in result.provenance["files"]}
     for state in file.states:
         known = calibrated if state.state == "as-left" else calibrated | before
-        if used.get("sha256") not in known:
+        if str(used.get("sha256")) not in known:
             raise UlnaInputError(
                 f"{path}: key 'provenance.arm_file': the {state.state} values were computed with {used.get('path')}, "
                 f"which is another arm than that of {result_path}; expected tests of this calibration. Verify again "
