@@ -79,7 +79,7 @@ def document(result: Path, state: str = "as-left", points: bool = False) -> dict
         "environment": {"temperature": None, "fixture": None, "range": None},
         "artefacts": [],
         "states": [{"state": state, "verdict": "fail", "departures": ["test 'bi' was not measured."], "tests": tests}],
-        "provenance": {"arm_file": None if points else arm, "version": "0"},
+        "provenance": {"arms": [] if points else [arm], "version": "0"},
     }
 
 
@@ -155,11 +155,18 @@ def test_a_limit_without_a_slope_is_a_line_too(result, tmp_path):
 def test_a_test_of_another_arm_is_told(result, tmp_path):
     path = verified(result, tmp_path)
     made = json.loads(path.read_text(encoding="utf-8"))
-    made["provenance"]["arm_file"]["sha256"] = "0" * 64
+    made["provenance"]["arms"][0]["sha256"] = "0" * 64
     path.write_text(json.dumps(made), encoding="utf-8")
     assert [said.key for said in gather(result, verified=path).verification.remarks] == ["verification.other-arm"]
     beside = hashlib.sha256((result.parent / "arm.toml").read_bytes()).hexdigest()
-    made["provenance"]["arm_file"]["sha256"] = beside
+    made["provenance"]["arms"][0]["sha256"] = beside
+    path.write_text(json.dumps(made), encoding="utf-8")
+    assert gather(result, verified=path).verification.remarks == []
+    start = hashlib.sha256((result.parent.parent / "start.toml").read_bytes()).hexdigest()
+    made["provenance"]["arms"][0]["sha256"] = start
+    path.write_text(json.dumps(made), encoding="utf-8")
+    assert [said.key for said in gather(result, verified=path).verification.remarks] == ["verification.other-arm"]
+    made["states"][0]["state"] = "as-found"
     path.write_text(json.dumps(made), encoding="utf-8")
     assert gather(result, verified=path).verification.remarks == []
     by_points = verified(result, tmp_path, points=True)

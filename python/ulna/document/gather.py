@@ -52,7 +52,7 @@ def gather(
     path = result / "result.json" if result.is_dir() else result
     found = Result.load(path)
     digest = sha256(read_bytes(path, "a result.json"))
-    test = None if verified is None else verification(verified, found.arm, path, digest)
+    test = None if verified is None else verification(verified, found, path, digest)
     source, files, no_study = find_study(found, path, study)
     rows, said = held_out(found, source, cross_validation, evaluation)
     missing = {} if no_study is None else {"study": no_study}

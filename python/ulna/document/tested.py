@@ -9,27 +9,31 @@ import numpy as np
 from ulna.document.content import Said, TestedLengths, Verification
 from ulna.files.toml import read_bytes, sha256
 from ulna.files.verification import TestedTable, load_verification
-from ulna.model import Arm
+from ulna.result import Result
 
 LENGTHS = ("length", "volumetric")
 """Kinds of tests whose first figure is of length errors."""
 
 
-def verification(path: Path, arm: Arm, result: Path, result_sha256: str) -> Verification:
+def verification(path: Path, result: Result, result_path: Path, result_sha256: str) -> Verification:
     """What `ulna verify` found, with its length errors as arrays. Raises UlnaInputError.
 
-    A test of encoder readings names the arm file that turned them into points: this result, or the arm.toml beside it.
-    A test of coordinates only names the arm. Where that is not this one, it is said.
+    A test of encoder readings names the arm files that turned them into points: this result, or the arm.toml beside it;
+    as found also the arm that the calibration started from. A test of coordinates only names the arm. Where that is not
+    this one, it is said.
     """
     file, digest = load_verification(path)
     remarks = []
-    used = file.provenance.get("arm_file")
-    if isinstance(used, dict):
-        beside = result.parent / "arm.toml"
+    arms = [each for each in file.provenance.get("arms", []) if isinstance(each, dict)]
+    if arms:
+        beside = result_path.parent / "arm.toml"
         ours = {result_sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
-        if used.get("sha256") not in ours:
-            remarks.append(Said("verification.other-arm", {"file": path.name, "arm": str(used.get("path"))}))
-    elif file.arm != arm.name:
+        before = {str(each["sha256"]) for each in result.provenance.get("files", [])}
+        known = ours | (before if any(state.state == "as-found" for state in file.states) else set())
+        for each in arms:
+            if each.get("sha256") not in known:
+                remarks.append(Said("verification.other-arm", {"file": path.name, "arm": str(each.get("path"))}))
+    elif file.arm != result.arm.name:
         remarks.append(Said("verification.by-name", {"file": path.name, "arm": file.arm}))
     lengths = [
         _lengths(state.state, test)
