@@ -51,7 +51,7 @@ PYTHON_LAYERS = [
         "reproduce",
     },
     {"report"},
-    {"certificate"},
+    {"certificate", "document"},
     {"cli", "__main__"},
 ]
 LAYER = {name: number for number, names in enumerate(PYTHON_LAYERS) for name in names}

@@ -17,6 +17,7 @@ from ulna.cli.importing import app as importing
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
 from ulna.cli.measure import measure
 from ulna.cli.plan import plan
+from ulna.cli.report import report
 from ulna.cli.reproduce import reproduce
 from ulna.cli.simulate import simulate
 from ulna.cli.uncertainty import uncertainty
@@ -64,6 +65,7 @@ app.command("certificate")(certificate)
 app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)
+app.command("report")(report)
 app.command("verify")(verify)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")

@@ -173,18 +173,21 @@ class Coordinates:
 
 
 def observability(rows: F64, coordinates: Coordinates) -> dict[str, float]:
-    """O1 to O5 of a plan's rows (R, free), after Sun and Hollerbach (ICRA 2008).
+    """`indices` of a plan's rows (R, free), columns scaled by their norm over the candidates."""
+    size = np.linalg.norm(coordinates.to_scaled, axis=0)
+    return indices(np.linalg.svd(rows @ coordinates.to_free / size, compute_uv=False), len(rows))
 
-    With σ₁ ≥ … ≥ σ_L the singular values of the Jacobian, columns scaled by their norm over the candidates, over the L
-    determined directions, and R rows:
+
+def indices(values: F64, rows: int) -> dict[str, float]:
+    """O1 to O5, after Sun and Hollerbach (ICRA 2008), of a Jacobian with so many rows.
+
+    With σ₁ ≥ … ≥ σ_L its singular values over the L determined directions, values (L,), and R rows:
     O1 = (σ₁ … σ_L)^(1/L) / √R (Borm and Menq), O2 = σ_L / σ₁ (Driels and Pathre), O3 = σ_L (Nahvi et al.),
     O4 = σ_L² / σ₁ (Nahvi and Hollerbach), O5 = 1 / Σ 1/σ_i (Sun and Hollerbach). All are the better the larger.
     """
-    size = np.linalg.norm(coordinates.to_scaled, axis=0)
-    values = np.linalg.svd(rows @ coordinates.to_free / size, compute_uv=False)
     first, last = float(values[0]), float(values[-1])
     return {
-        "O1": float(np.exp(np.log(values).mean()) / np.sqrt(len(rows))),
+        "O1": float(np.exp(np.log(values).mean()) / np.sqrt(rows)),
         "O2": last / first,
         "O3": last,
         "O4": last**2 / first,

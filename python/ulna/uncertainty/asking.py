@@ -56,7 +56,7 @@ def uncertainty(
     arm = known.arm
     ledger = None
     if study is not None:
-        _check_same(study, known.made, result)
+        check_same(study, known.made, result)
         if keep is not None:
             ledger = Ledger(Path(keep), job_of(study, arm, most_trials, seed))
     elif keep is not None:
@@ -139,7 +139,7 @@ def _known(
     return known_of_performance(result, Path(performance), seed, workers, progress)
 
 
-def _check_same(study: Study, made: dict[str, Any], result: Path) -> None:
+def check_same(study: Study, made: dict[str, Any], result: Path) -> None:
     """Raises UlnaInputError where the result was not made from this study."""
     theirs = [file.get("sha256") for file in made.get("files", [])]
     if theirs != [file.sha256 for file in study.files]:
