@@ -36,7 +36,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "performance.txt": (
         [
             *("uncertainty", "out/demo/arm.toml", "examples/platinum/length.toml"),
-            *("--performance", "examples/platinum/performance.toml", "--trials", "20000"),
+            *("--performance", "examples/platinum/performance.toml", "--trials", "5000"),
         ],
         None,
     ),
