@@ -24,7 +24,7 @@ def verification_report(found: Verification) -> list[RenderableType]:
     states = [state.state for state in found.states]
     rows = [_row(name, found.states) for name in names]
     heads = ["", *(head for state in states for head in (f"{state}\nµm", "limit\nµm", "verdict")), "u\nµm"]
-    parts.append(table("Figures: of each the value nearest to its limit, or farthest beyond", heads, rows, left=1))
+    parts.append(table("Figures, the worst value of each", heads, rows, left=1))
     parts += _not_passed(found)
     formulas = {figure.definition.name: figure for state in found.states for figure in state.figures.values()}
     parts += [
