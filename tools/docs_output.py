@@ -23,6 +23,8 @@ EXAMPLES_OUTPUT = ROOT / "docs" / "examples" / "output"
 #: an example that prints this as its exit code says that its data are not at hand
 SKIPPED = 77
 
+#: the arm that plays what is shown of acceptance tests
+TRUTH = "examples/platinum/truth.toml"
 #: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
 COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "identify.txt": (["identify", "examples/platinum/study.toml"], None),
@@ -45,6 +47,11 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
         None,
     ),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
+    "verify-plan.txt": (
+        f"verify --make-plan iso-10360-12 --play {TRUTH} --seed 1 -o out/acceptance".split(),
+        None,
+    ),
+    "verify.txt": (["verify", "out/demo/result.json", "out/acceptance/plan.toml", "-o", "out/verified"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
@@ -62,6 +69,7 @@ PICTURES = {
     "out/volume/volume.png": ROOT / "docs" / "pictures" / "volume.png",
     "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
     "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
+    "out/verified/lengths.png": ROOT / "docs" / "pictures" / "verify-lengths.png",
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",
     "out/cheng2011/convergence.png": ROOT / "docs" / "pictures" / "cheng2011-convergence.png",
 }
