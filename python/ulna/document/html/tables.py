@@ -81,7 +81,9 @@ def _cylindrical(content: Content, words: Words) -> str:
 def determined(content: Content, words: Words) -> str:
     """Directions that are lost or weak, with cause and remedy."""
     found = content.identification
-    page = paragraph(words("determined.all")) if not found.lost else ""
+    page = ""
+    if not found.lost:
+        page = paragraph(words("determined.with-priors" if found.from_prior else "determined.all"))
     for title, directions in (("determined.lost", found.lost), ("determined.weak", found.weak)):
         if directions:
             page += f"<h3>{words(title)}</h3>\n" + _directions(directions, words(title), words)
