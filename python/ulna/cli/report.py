@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import Force, one_of
+from ulna.cli.options import Force, Json, one_of
 from ulna.cli.running import guard
 
 
@@ -46,12 +46,15 @@ def report(
     ] = None,
     language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Write the report of a calibration: what a metrologist wants to see before trusting it.
 
     Figures before and after, on fitted and held-out readings; distribution of the residuals; residuals over each joint
     angle, reach and temperature, reading by reading and in space; parameters with their uncertainties and correlations;
     observability; artefacts, environment, outliers, provenance. What the data do not give is said in words.
+
+    With --json it prints which files were written and what is missing.
 
     Example: [bold]ulna report out/result.json --html -o report.html[/bold]
     """
@@ -63,10 +66,18 @@ def report(
     one_of("--language", language, LANGUAGES)
     formats = ["html"] if as_html else []
     wanted = targets(out, formats or ["html"], force)
-    content = gather(result, study, cross_validation, evaluation, laboratory, verification)
+    with output.progress_bar() as progress:
+        content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
     files = [result / "result.json" if result.is_dir() else result]
     files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
     write_report(content, wanted, language, files, force)
+    if as_json:
+        output.print_json(
+            {
+                "files": {each: str(path) for each, path in wanted.items()},
+                "missing": {section: said.key for section, said in content.missing.items()},
+            }
+        )
     for said in content.missing.values():
         if said.key == "study.changed":
             output.say(f"The study has changed since the calibration ({said.values['files']}): not used.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,11 @@ from ulna.files.toml import read_bytes, sha256
 from ulna.result import Result
 from ulna.study import Artefact, Study
 
+Progress = Callable[[str, int, int], None]
+
+_STEPS = 4
+"""The result; the study; what it says; what is made of it."""
+
 
 def gather(
     result: Path,
@@ -41,19 +46,29 @@ def gather(
     evaluation: Path | None = None,
     laboratory: Path | None = None,
     verified: Path | None = None,
+    progress: Progress | None = None,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
     result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
     longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
     calibrated for whom, with what. verified: what `ulna verify` wrote.
+    progress is called with (stage, done, total).
     """
+
+    def at(done: int) -> None:
+        if progress is not None:
+            progress("gathering", done, _STEPS)
+
+    at(0)
     named = None if laboratory is None else load_laboratory(laboratory)
     path = result / "result.json" if result.is_dir() else result
     found = Result.load(path)
+    at(1)
     digest = sha256(read_bytes(path, "a result.json"))
     test = None if verified is None else verification(verified, found, path, digest)
     source, files, no_study = find_study(found, path, study)
+    at(2)
     rows, said = held_out(found, source, cross_validation, evaluation)
     missing = {} if no_study is None else {"study": no_study}
     over: list[Cloud] = []
@@ -67,6 +82,7 @@ def gather(
         missing["verification"] = Said("missing.verification")
     if named is None:
         missing["laboratory"] = Said("missing.laboratory")
+    at(3)
     missing |= _missing(found, source, over, quiver, lengths, rows)
     made = found.provenance
     return Content(

@@ -26,6 +26,8 @@ TAILS = 100
 ARROW = 0.08
 """Of the extent of all tips: how long the longest but a twentieth of the vectors are drawn."""
 
+_UNITS = {"joint": "°", "reach": "mm", "temperature": "°C"}
+
 
 def distribution_plots(samples: Sequence[Sample], page: Words, words: Words) -> list[Plot]:
     """Histogram and Q–Q plot of each sample."""
@@ -134,11 +136,11 @@ def _marks(
     """edge: where they stand, their own values being beyond the axis."""
     value = cloud.residual_mm[kept]
     hover = [
-        f"{reading_label(readings, int(k), words)}<br>{number(float(size_mm))} mm"
-        for k, size_mm in zip(cloud.reading[kept], value, strict=True)
+        f"{reading_label(readings, int(k), words)}<br>{number(float(x))} {_UNITS[cloud.over]}, {number(float(each))} mm"
+        for k, x, each in zip(cloud.reading[kept], cloud.x[kept], value, strict=True)
     ]
     height = value if edge is None else np.full(len(kept), edge)
-    return points(label, cloud.x[kept], height, colour, symbol, size, text=hover, hoverinfo="text+x")
+    return points(label, cloud.x[kept], height, colour, symbol, size, text=hover, hoverinfo="text")
 
 
 def reading_label(readings: ReadingRows, k: int, words: Words) -> str:
