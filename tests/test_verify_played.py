@@ -153,3 +153,31 @@ def test_a_played_plan_is_json_when_asked(truth: Arm, small: Path, tmp_path: Pat
     text = (tmp_path / "p" / "plan.toml").read_text(encoding="utf-8")
     assert 'profile = "../' in text, "from where the plan stands, so that both may move"
     assert run("verify", tmp_path / "arm.toml", tmp_path / "p" / "plan.toml").returncode == 0
+
+
+def test_seats_at_the_wrong_distance_are_told(truth: Arm, tmp_path: Path) -> None:
+    truth.save(tmp_path / "arm.toml")
+    play_test_plan("asme-b89-4-22", truth, seed=4).save(tmp_path)
+    (tmp_path / "own.toml").write_text(
+        'format = "ulna-profile/1"\nname = "own"\nbased_on = "asme-b89-4-22"\n[test.single-point]\n'
+        "shares = [[0.0, 0.2], [0.7, 0.75], [0.8, 1.2]]\n",
+        encoding="utf-8",
+    )
+    text = (tmp_path / "plan.toml").read_text(encoding="utf-8").replace('"asme-b89-4-22"', '"own.toml"')
+    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
+    told = ulna.verify(tmp_path / "plan.toml", tmp_path / "arm.toml").states[0].tests[1].departures
+    assert len(told) == 1
+    assert told[0].startswith("seat position middle: ")
+    assert told[0].endswith("the profile asks for 70 to 75 %.")
+
+
+def test_seats_in_any_frame_are_not_taken_for_checked(truth: Arm, tmp_path: Path) -> None:
+    made = play_test_plan("asme-b89-4-22", truth, seed=4)
+    angles = [f"q{k + 1}" for k in range(7)]
+    p_mm = truth.tip(made.table.select(angles).to_numpy())
+    table = made.table.drop(angles).with_columns(pl.Series(axis, p_mm[:, k]) for k, axis in enumerate("xyz"))
+    table.write_csv(tmp_path / "touches.csv")
+    text = made.text(tmp_path).replace("range =", "ball = 6.0\nrange =")
+    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
+    told = ulna.verify(tmp_path / "plan.toml").states[0].tests[1].departures
+    assert told == ["how far from the base the seats stood was not checked: coordinates may be in any frame."]
