@@ -68,7 +68,7 @@ def test_encoders_and_coordinates_say_the_same(exact: Path, truth: Arm) -> None:
     table = table.drop(angles).with_columns(pl.Series(axis, p_mm[:, k]) for k, axis in enumerate("xyz"))
     table.write_csv(beside / "touches.csv")
     text = (exact / "plan" / "plan.toml").read_text(encoding="utf-8")
-    (beside / "plan.toml").write_text(text.replace("range =", "ball = 6.0\nrange ="), encoding="utf-8")
+    (beside / "plan.toml").write_text(text.replace("\nrange =", "\nball = 6.0\nrange ="), encoding="utf-8")
     ours, theirs = ulna.verify(exact / "plan" / "plan.toml", exact / "arm.toml"), ulna.verify(beside / "plan.toml")
     for name, figure in ours.states[0].figures.items():
         other = theirs.states[0].figures[name]
@@ -177,7 +177,7 @@ def test_seats_in_any_frame_are_not_taken_for_checked(truth: Arm, tmp_path: Path
     p_mm = truth.tip(made.table.select(angles).to_numpy())
     table = made.table.drop(angles).with_columns(pl.Series(axis, p_mm[:, k]) for k, axis in enumerate("xyz"))
     table.write_csv(tmp_path / "touches.csv")
-    text = made.text(tmp_path).replace("range =", "ball = 6.0\nrange =")
+    text = made.text(tmp_path).replace("\nrange =", "\nball = 6.0\nrange =")
     (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
     told = ulna.verify(tmp_path / "plan.toml").states[0].tests[1].departures
     assert told == ["how far from the base the seats stood was not checked: coordinates may be in any frame."]
