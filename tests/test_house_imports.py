@@ -16,7 +16,7 @@ PYTHON_LAYERS = [
     {"model"},
     {"frames"},
     {"study"},
-    {"parameters", "options", "simulation", "plan_spec"},
+    {"parameters", "options", "simulation", "plan_spec", "performance"},
     {"files"},
     {
         "assembly",
@@ -51,6 +51,7 @@ PYTHON_LAYERS = [
         "reproduce",
     },
     {"report"},
+    {"certificate", "document"},
     {"cli", "__main__"},
 ]
 LAYER = {name: number for number, names in enumerate(PYTHON_LAYERS) for name in names}

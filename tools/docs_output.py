@@ -9,8 +9,10 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
+from docs_artefacts import artefact_table
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
@@ -33,6 +35,17 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
+    "performance.txt": (
+        [
+            *("uncertainty", "out/demo/arm.toml", "examples/platinum/length.toml"),
+            *("--performance", "examples/platinum/performance.toml", "--trials", "5000"),
+        ],
+        None,
+    ),
+    "volume.txt": (
+        ["uncertainty", "out/demo/result.json", "examples/platinum/volume.toml", "-o", "out/volume"],
+        None,
+    ),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
     "verify-plan.txt": (
         f"verify --make-plan iso-10360-12 --play {TRUTH} --seed 1 -o out/acceptance".split(),
@@ -53,6 +66,7 @@ OUTCOMES = "\nOn the same two arms"
 
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
+    "out/volume/volume.png": ROOT / "docs" / "pictures" / "volume.png",
     "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
     "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
     "out/verified/lengths.png": ROOT / "docs" / "pictures" / "verify-lengths.png",
@@ -69,6 +83,39 @@ def tidy(text: str) -> str:
 def first_lines(text: str, lines: int) -> str:
     """The first lines, and a sign that there are more."""
     return "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
+
+
+#: how the page on certificates comes to its own; only what the last one prints is shown
+CERTIFICATE = [
+    ["verify", "--make-plan", "iso-10360-12", "--play", "out/demo/arm.toml", "-o", "out/to-measure"],
+    ["verify", "out/demo/result.json", "out/to-measure/plan.toml", "-o", "out/tested"],
+    [
+        *["certificate", "out/demo/result.json", "examples/platinum/laboratory.toml", "--dcc"],
+        *["--verification", "out/tested/verification.json", "-o", "out/certificate.xml"],
+    ],
+]
+
+
+def certificate_outputs(folder: Path) -> dict[str, str]:
+    """What the command prints, and pieces of its XML, long lists cut short. Raises RuntimeError where one fails."""
+    for arguments in CERTIFICATE:
+        done = ulna(arguments, folder)
+        if done.returncode != 0:
+            raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
+    text = (folder / "out" / "certificate.xml").read_text(encoding="utf-8")
+    second = [match.start() for match in re.finditer("<si:columnXMLList>", text)][1]
+    size = text.index("<dcc:content>P_Size.Sph")
+    return {
+        "certificate.txt": tidy(done.stdout),
+        "certificate-head.txt": _piece(text, text.index('<dcc:quantity refType="basic_measuredValue">'), second),
+        "certificate-test.txt": _piece(text, text.rindex("<dcc:quantity ", 0, size), text.index("<dcc:data>", size)),
+    }
+
+
+def _piece(text: str, begin: int, end: int) -> str:
+    """Whole lines from begin to end, without their indent."""
+    lines = textwrap.dedent(text[text.rindex("\n", 0, begin) + 1 : end].rstrip()).splitlines()
+    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).{30,}?(?=</si)", r"\1…", line) for line in lines) + "\n…\n"
 
 
 def command_outputs(pictures: bool = False) -> dict[str, str]:
@@ -88,6 +135,7 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
         if done.returncode != 0:
             raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
         found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
+        found |= certificate_outputs(folder)
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)
@@ -152,6 +200,7 @@ def main() -> None:
     for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
+    (OUTPUT / "which-artefact.md").write_text(artefact_table(), encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():
         printed = example_output(example)

@@ -201,7 +201,7 @@ class Result:
                 outliers=document.get("outliers", []),
                 extras=[JudgedExtra(**entry) for entry in document.get("extras", [])],
             )
-        except (KeyError, TypeError, pl.exceptions.PolarsError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError, pl.exceptions.PolarsError) as error:
             raise UlnaInputError(
                 f"{path}: not as {FORMAT} says ({type(error).__name__}: {error}); expected the file as `ulna "
                 "calibrate` wrote it. Calibrate again."

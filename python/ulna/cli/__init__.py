@@ -8,6 +8,7 @@ import typer
 
 from ulna.cli.batch import batch
 from ulna.cli.calibrate import calibrate
+from ulna.cli.certificate import certificate
 from ulna.cli.cross_validate import cross_validate
 from ulna.cli.evaluate import evaluate
 from ulna.cli.exporting import app as exporting
@@ -16,6 +17,7 @@ from ulna.cli.importing import app as importing
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
 from ulna.cli.measure import measure
 from ulna.cli.plan import plan
+from ulna.cli.report import report
 from ulna.cli.reproduce import reproduce
 from ulna.cli.simulate import simulate
 from ulna.cli.uncertainty import uncertainty
@@ -59,9 +61,11 @@ app.command("evaluate")(evaluate)
 app.command("measure")(measure)
 app.command("uncertainty")(uncertainty)
 app.command("cross-validate")(cross_validate)
+app.command("certificate")(certificate)
 app.command("batch")(batch)
 app.command("simulate")(simulate)
 app.command("plan")(plan)
+app.command("report")(report)
 app.command("verify")(verify)
 app.command("reproduce")(reproduce)
 app.add_typer(importing, name="import")

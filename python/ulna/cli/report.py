@@ -1,0 +1,86 @@
+"""`ulna report`: the report of a calibration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ulna.cli.options import Force, Json, one_of
+from ulna.cli.running import guard
+
+
+@guard
+def report(
+    result: Annotated[
+        Path, typer.Argument(metavar="RESULT", help="The result.json of a calibration.", show_default=False)
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            "-o", "--out", metavar="PATH", help="File to write, or a folder for report.html.", show_default=False
+        ),
+    ],
+    as_html: Annotated[
+        bool, typer.Option("--html", help="One HTML file; without another format this is meant.")
+    ] = False,
+    study: Annotated[
+        Path | None,
+        typer.Option("--study", metavar="STUDY", help="Of that calibration, where it is not found by itself."),
+    ] = None,
+    cross_validation: Annotated[
+        Path | None,
+        typer.Option("--cross-validation", metavar="FILE", help="A cross-validation.json: readings held out."),
+    ] = None,
+    evaluation: Annotated[
+        Path | None, typer.Option("--evaluation", metavar="FILE", help="An evaluation.json: readings held out.")
+    ] = None,
+    verification: Annotated[
+        Path | None,
+        typer.Option("--verification", metavar="FILE", help="A verification.json: the acceptance test, MPE."),
+    ] = None,
+    laboratory: Annotated[
+        Path | None,
+        typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
+    ] = None,
+    language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Write the report of a calibration: what a metrologist wants to see before trusting it.
+
+    Figures before and after, on fitted and held-out readings; distribution of the residuals; residuals over each joint
+    angle, reach and temperature, reading by reading and in space; parameters with their uncertainties and correlations;
+    observability; artefacts, environment, outliers, provenance. What the data do not give is said in words.
+
+    With --json it prints which files were written and what is missing.
+
+    Example: [bold]ulna report out/result.json --html -o report.html[/bold]
+    """
+    from ulna.cli import output
+    from ulna.document.gather import gather
+    from ulna.document.languages import LANGUAGES
+    from ulna.document.written import targets, write_report
+
+    one_of("--language", language, LANGUAGES)
+    formats = ["html"] if as_html else []
+    wanted = targets(out, formats or ["html"], force)
+    with output.progress_bar() as progress:
+        content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
+    files = [result / "result.json" if result.is_dir() else result]
+    files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
+    write_report(content, wanted, language, files, force)
+    if as_json:
+        output.print_json(
+            {
+                "files": {each: str(path) for each, path in wanted.items()},
+                "missing": {section: said.key for section, said in content.missing.items()},
+            }
+        )
+    for said in content.missing.values():
+        if said.key == "study.changed":
+            output.say(f"The study has changed since the calibration ({said.values['files']}): not used.")
+        elif said.key == "study.absent":
+            output.say(f"The study {said.values['study']} was not found: give it with --study.")
+    output.say(f"Written: {', '.join(str(path) for path in wanted.values())}")

@@ -1,0 +1,1 @@
+"""Reports of a calibration: one content, gathered once, and its renderings."""
