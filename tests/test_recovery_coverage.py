@@ -84,8 +84,8 @@ def test_intervals_from_noise_drawn_by_the_core(kind):
 
 
 def test_a_bar_touched_once_at_each_end_is_calibrated_by_its_lengths():
-    """In Monte Carlo the bar becomes its length rows, but for rounding; what each run states, and how they scatter, is what
-    the fit with placements says."""
+    """In Monte Carlo the bar becomes its length rows, but for rounding; what each run states, and how they scatter, is
+    what the fit with placements says."""
     truth = table_4()
     bar, rows = exact_bars(truth, 101)
     placed = core_problem(truth, [bar], STATED)

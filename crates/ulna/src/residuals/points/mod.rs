@@ -281,7 +281,8 @@ impl Readings for Points {
                 (name, length.u_mm, length.fitted)
             }
         };
-        let pairs: Vec<(usize, usize)> = self.touches.standings.iter().map(|rows| (rows.start, rows.start + 1)).collect();
+        let pairs: Vec<(usize, usize)> =
+            self.touches.standings.iter().map(|rows| (rows.start, rows.start + 1)).collect();
         Some(Box::new(self.lengths_between(&pairs, name, u_mm, fitted)))
     }
 
