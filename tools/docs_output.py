@@ -12,6 +12,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+from docs_artefacts import artefact_table
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
@@ -22,6 +23,8 @@ EXAMPLES_OUTPUT = ROOT / "docs" / "examples" / "output"
 #: an example that prints this as its exit code says that its data are not at hand
 SKIPPED = 77
 
+#: the arm that plays what is shown of acceptance tests
+TRUTH = "examples/platinum/truth.toml"
 #: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
 COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "identify.txt": (["identify", "examples/platinum/study.toml"], None),
@@ -32,7 +35,23 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
+    "performance.txt": (
+        [
+            *("uncertainty", "out/demo/arm.toml", "examples/platinum/length.toml"),
+            *("--performance", "examples/platinum/performance.toml", "--trials", "5000"),
+        ],
+        None,
+    ),
+    "volume.txt": (
+        ["uncertainty", "out/demo/result.json", "examples/platinum/volume.toml", "-o", "out/volume"],
+        None,
+    ),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
+    "verify-plan.txt": (
+        f"verify --make-plan iso-10360-12 --play {TRUTH} --seed 1 -o out/acceptance".split(),
+        None,
+    ),
+    "verify.txt": (["verify", "out/demo/result.json", "out/acceptance/plan.toml", "-o", "out/verified"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
@@ -47,8 +66,10 @@ OUTCOMES = "\nOn the same two arms"
 
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
+    "out/volume/volume.png": ROOT / "docs" / "pictures" / "volume.png",
     "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
     "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
+    "out/verified/lengths.png": ROOT / "docs" / "pictures" / "verify-lengths.png",
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",
     "out/cheng2011/convergence.png": ROOT / "docs" / "pictures" / "cheng2011-convergence.png",
 }
@@ -179,6 +200,7 @@ def main() -> None:
     for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
+    (OUTPUT / "which-artefact.md").write_text(artefact_table(), encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():
         printed = example_output(example)

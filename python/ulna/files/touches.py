@@ -175,9 +175,10 @@ def _remark_repeats(values: F64, header: Header, remarks: list[str]) -> None:
     if (count > 1).any():
         row = int(first[count > 1].min())
         same = np.flatnonzero((values == values[row]).all(axis=1)) + 1
+        extra = int((count - 1).sum())
         remarks.append(
-            f"{header.path}: {int((count - 1).sum())} rows repeat another one to the last digit, the first rows "
-            f"{', '.join(map(str, same[:4].tolist()))}: all are used."
+            f"{header.path}: {extra} row{'s repeat' if extra > 1 else ' repeats'} another one to the last digit, first "
+            f"rows {', '.join(map(str, same[:4].tolist()))}: all are used."
         )
 
 
