@@ -162,8 +162,10 @@ class ParameterRow:
     """(estimate - nominal) / u."""
     status: str
     """"fitted", "held" or "not-determined"."""
+    cause: str | None
+    """Why it is not determined, by its key: "base-frame", "probe-on-axis", …; None where it is, or nobody knows."""
     reason: str | None
-    """Why it is not determined, in the words of the identification (English)."""
+    """The same in the words of the identification (English)."""
 
 
 @dataclass(frozen=True)

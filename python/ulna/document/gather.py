@@ -16,6 +16,7 @@ from ulna.document.content import (
     Content,
     Environment,
     Lengths,
+    Parameters,
     Provenance,
     QualityRow,
     Quiver,
@@ -83,7 +84,8 @@ def gather(
     if named is None:
         missing["laboratory"] = Said("missing.laboratory")
     at(3)
-    missing |= _missing(found, source, over, quiver, lengths, rows)
+    known = parameters(found)
+    missing |= _missing(found, known, source, over, quiver, lengths, rows)
     made = found.provenance
     return Content(
         arm=found.arm.name,
@@ -96,7 +98,7 @@ def gather(
         samples=samples(found.residuals, found.artefacts),
         clouds=over,
         quiver=quiver,
-        parameters=parameters(found),
+        parameters=known,
         identification=found.identifiability,
         observability=observability(found),
         lengths=lengths,
@@ -125,6 +127,7 @@ def gather(
 
 def _missing(
     result: Result,
+    known: Parameters,
     study: Study | None,
     over: Sequence[Cloud],
     quiver: Quiver | None,
@@ -145,7 +148,7 @@ def _missing(
             missing["lengths"] = Said("missing.lengths")
         if quiver is None:
             missing["quiver"] = Said("missing.quiver")
-    if not result.covariance.names:
+    if not known.correlation_names:
         missing["correlation"] = Said("missing.correlation")
     if observability(result) is None:
         missing["observability"] = Said("missing.observability")

@@ -63,7 +63,9 @@ def _histogram(name: str, sample: Sample, caption: str, words: Words) -> Plot:
         density = np.exp(-0.5 * z**2) / (sample.sigma_mm * math.sqrt(2.0 * math.pi))
         normal = density * width[0] * len(sample.value_mm)
         data.append(line(words("legend.normal"), x, normal, INK, "dash"))
-    return Plot(name, caption, data, layout(axis(words("axis.error-mm")), axis(words("axis.count")), True))
+    return Plot(
+        name, caption, data, layout(axis(words("axis.error-mm")), axis(words("axis.count"), tickformat="d"), True)
+    )
 
 
 def _quantiles(name: str, sample: Sample, caption: str, page: Words, words: Words) -> Plot:
@@ -158,7 +160,7 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
     x = found.first + 1 + 0.5 * (found.step - 1)
     one = found.step == 1
     count = len(readings.size_mm)
-    said = page("shown.all", count=count) if one else page("shown.runs", step=found.step, count=count)
+    said = page("shown.bars", count=count) if one else page("shown.runs", step=found.step, count=count)
     labels = [reading_label(readings, int(k), words) for k in found.first]
     colour = [OUTLIER if far else MAIN for far in found.outlier]
 
@@ -185,7 +187,11 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
     if found.outlier.any():
         data.append(points(words("legend.outliers"), x[found.outlier], found.largest[found.outlier], OUTLIER, "x", 9))
     shape = layout(
-        axis(words("axis.reading"), zeroline=False), axis(words("axis.size-mm")), True, barmode="overlay", bargap=0.1
+        axis(words("axis.reading"), zeroline=False, tickformat="d"),
+        axis(words("axis.size-mm")),
+        True,
+        barmode="overlay",
+        bargap=0.1,
     )
     return Plot("poses", said, data, shape, 340)
 

@@ -49,10 +49,13 @@ def parameter_tables(content: Content, words: Words) -> str:
 
 def _parameter(row: ParameterRow, words: Words) -> list[str]:
     ratio = "–" if row.ratio is None else text(number(row.ratio))
+    status: str = words(f"status.{row.status}")
+    if row.cause is not None and words.has(f"cause.{row.cause}"):
+        status += f" <small>({words(f'cause.{row.cause}')})</small>"
     return [
         name(row.name),
         text(row.unit),
-        words(f"status.{row.status}"),
+        status,
         text(quantity(row.nominal, row.u, row.unit)),
         text(quantity(row.estimate, row.u, row.unit)),
         text(uncertainty(row.u)),
