@@ -57,8 +57,8 @@ def rounded(value: float, expanded: float | None, unit: str) -> tuple[str, str]:
     """A value and its expanded uncertainty for a certificate: U with two significant digits, the value to the same
     place (GUM 7.2.6), both to the nearest, halves to even; without U as `quantity` has it, and a dash.
 
-    Lengths and angles are plain decimals; 1/K and rad/(N m), and what is smaller than 1e-12, are in powers of ten. Where
-    U is 0 the value is as it was given.
+    Lengths and angles are plain decimals; 1/K and rad/(N m), and what is smaller than 1e-12, are in powers of ten.
+    Where U is 0 the value is as it was given.
     """
     if expanded is None or not math.isfinite(expanded):
         return quantity(value, None, unit), "–"

@@ -7,11 +7,13 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib import font_manager, rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from ulna.document.content import Cloud, Lengths, Parameters, QualityRow, ReadingRows, Sample
 from ulna.document.languages import Words
@@ -36,7 +38,13 @@ def looks(fonts: Sequence[Path]) -> Iterator[None]:
     for file in fonts:
         font_manager.fontManager.addfont(file)
         names.append(font_manager.FontProperties(fname=file).get_name())
-    size = {"font.size": 7.5, "axes.linewidth": 0.6, "lines.linewidth": 1.2, "font.family": names}
+    size: Any = {
+        "font.size": 7.5,
+        "axes.labelsize": 7.0,
+        "axes.linewidth": 0.6,
+        "lines.linewidth": 1.2,
+        "font.family": names,
+    }
     with rc_context({**STYLE, **size}):
         yield
 
@@ -91,7 +99,7 @@ def quantiles(sample: Sample, words: Words) -> str:
 
 def cloud(found: Cloud, readings: ReadingRows, words: Words) -> tuple[str, list[str]]:
     """Readings, outliers and means over one cause; the picture and what its caption must say of what is shown."""
-    figure, axes = _axes(HALF_MM, 47.0)
+    figure, axes = _axes(HALF_MM, 54.0)
     outlier = readings.outlier[found.reading]
     part = shown(outlier, MOST_POINTS)
     plain = part.index[~outlier[part.index]]
@@ -174,10 +182,23 @@ def ratios(parameters: Parameters, words: Words) -> str | None:
     axes.set_xscale("symlog", linthresh=4.0, linscale=1.0)
     most = 1.6 * max(float(np.abs(value).max()), 4.0)
     axes.set_xlim(-most, most)
+    decades = math.floor(math.log10(most))
+    powers = range(1, decades + 1, max(math.ceil(decades / 5), 1))
+    ticks = [
+        (sign * 10.0**power, f"{'−' if sign < 0 else ''}10{_power(power)}") for sign in (-1, 1) for power in powers
+    ]
+    ticks += [(-2.0, "−2"), (0.0, "0"), (2.0, "2")]
+    axes.set_xticks([at for at, _ in ticks], [label for _, label in ticks])
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_yticks(y, [_label(number, row.name) for number, row in rows], parse_math=False, fontsize=6.5)
     axes.set_ylim(-0.7, len(rows) - 0.3)
     axes.set_xlabel(words("column.ratio"))
     return _svg(figure)
+
+
+def _power(power: int) -> str:
+    """As an exponent; of 1 none."""
+    return "" if power == 1 else "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(power))
 
 
 def _label(number: int, name: str) -> str:

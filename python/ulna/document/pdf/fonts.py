@@ -1,9 +1,9 @@
 """Fonts for what a page says: free ones that come with the program's packages, then what the machine has.
 
 Libertinus Serif is part of Typst, DejaVu Sans (Latin, Greek, Cyrillic, Arabic, Hebrew, signs) of Matplotlib; both are
-free, both are there on every machine. Every character must be one of DejaVu Sans, or another font is looked for: in the
-folder that the user names, in the package `pylopdf-fonts-zh-cn` (the extra `chinese`), on the system. A character that no
-font has is an error; an empty box is never printed.
+free, both are there on every machine. Every character must be one of DejaVu Sans, or another font is looked for: in
+the folder that the user names, in the package `pylopdf-fonts-zh-cn` (the extra `chinese`), on the system. A character
+that no font has is an error; an empty box is never printed.
 """
 
 from __future__ import annotations

@@ -139,7 +139,7 @@ def _clouds(content: Content, words: Words) -> list[Block]:
     page = [blocks.heading(words("section.joints"))]
     if over_joints:
         legend = words("paper.cloud-legend")
-        page += [blocks.paragraph(f"{words('joints.note')} {legend}", "note"), blocks.figures(over_joints, 2)]
+        page += [blocks.paragraph(f"{words('joints.note')} {legend}", "lead"), blocks.figures(over_joints, 2)]
     lacking = [content.missing[key] for key in ("study", "joint") if key in content.missing]
     return [*page, *(blocks.paragraph(words.say(each), "missing") for each in lacking)]
 

@@ -12,7 +12,7 @@ from ulna.document.languages import Words
 from ulna.document.pdf import blocks
 from ulna.document.pdf.blocks import Block, Cell
 from ulna.document.pdf.text import clean, name
-from ulna.report.digits import figure_mm, rounded, uncertainty
+from ulna.report.digits import figure_mm, rounded, small, uncertainty
 from ulna.report.identification import combination, sentence
 
 MOST_OUTLIERS = 40
@@ -142,9 +142,9 @@ def uncertainty_statement(content: Content, words: Words) -> list[Block]:
     how = words("parameters.stated") if stated else words("parameters.estimated", freedom=int(freedom))
     page.append(blocks.paragraph(f"{words('paper.manner', k=f'{known.k:.2f}', p=f'{100 * known.p:g}')} {how}"))
     environment = content.environment
-    within = [words("included.readings" if stated else "included.scatter"), words("included.placements")]
+    within: list[str] = [words("included.readings" if stated else "included.scatter"), words("included.placements")]
     if environment.encoder_rad:
-        shown = ", ".join(f"{value:.2g}" for value in dict.fromkeys(environment.encoder_rad))
+        shown = ", ".join(small(value, 2) for value in dict.fromkeys(environment.encoder_rad))
         within.append(words("environment.encoder", encoder=shown))
     if environment.seat_mm is not None:
         within.append(words("environment.seat", seat=f"{environment.seat_mm:g}"))
@@ -152,7 +152,7 @@ def uncertainty_statement(content: Content, words: Words) -> list[Block]:
     if with_u:
         within.append(f"{words('included.artefacts')} {', '.join(with_u)}")
     without = [row.name for row in content.artefacts if row.dimension is not None and not row.u_mm]
-    outside = [words("excluded.artefacts", names=", ".join(without))] if without else []
+    outside: list[str] = [words("excluded.artefacts", names=", ".join(without))] if without else []
     outside += [words(f"excluded.{key}") for key in ("thermal", "model", "time", "use")]
     return [
         *page,

@@ -10,10 +10,10 @@ from ulna.document.html.markup import END, ISOLATE, number
 from ulna.document.languages import Words
 
 #: controls, and what turns or overrides the direction of the text about it; they are shown as U+FFFD, never obeyed
-_CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+_CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 #: letters in a row before a word may be broken anywhere; scripts that break anywhere by themselves count for nothing
 LONGEST = 22
-_LONG_WORD = re.compile(r"[^\s\u200b\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef]{%d,}" % (LONGEST + 1))
+_LONG_WORD = re.compile(rf"[^\s\u200b\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef]{{{LONGEST + 1},}}")
 _PIECE = 8
 
 

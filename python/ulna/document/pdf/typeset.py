@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import json
-import os
 import shutil
 import tempfile
 from collections.abc import Mapping
@@ -42,23 +41,22 @@ def _compiled(data: Mapping[str, Any], fonts: Chosen, kind: Literal["pdf", "png"
             _lay(file, Path(folder) / f"{number}-{file.name}")
         found = typst.Fonts(include_system_fonts=False, include_embedded_fonts=True, font_paths=[folder])
         try:
-            compiled, warnings = typst.compile_with_warnings(
-                template,
+            # the root is a folder with nothing but fonts: neither the template nor a picture can read a file
+            compiler = typst.Compiler(template, root=folder, font_paths=found, sys_inputs=inputs)
+            compiled, warnings = compiler.compile_with_warnings(
                 format=kind,
                 ppi=ppi,
-                font_paths=found,
-                sys_inputs=inputs,
                 pdf_standards=list(STANDARDS) if kind == "pdf" else [],
                 timestamp=_stamp(data),
-                root=folder,
             )
         except typst.TypstError as error:
             hints = "".join(f" ({hint})" for hint in error.hints)
             raise UlnaInputError(f"PDF: Typst could not set it: {error.message}{hints}.") from None
     if warnings:
         raise RuntimeError(f"Typst warns: {'; '.join(str(each) for each in warnings)}")  # a mistake of ours
-    pages = compiled if isinstance(compiled, list) else [compiled]
-    return [page for page in pages if page is not None]
+    if compiled is None:
+        raise RuntimeError("Typst gave nothing")  # a mistake of ours
+    return [compiled] if isinstance(compiled, bytes) else compiled
 
 
 def _stamp(data: Mapping[str, Any]) -> int:
@@ -69,6 +67,6 @@ def _stamp(data: Mapping[str, Any]) -> int:
 
 def _lay(file: Path, target: Path) -> None:
     try:
-        os.symlink(file.resolve(), target)
+        target.symlink_to(file.resolve())
     except OSError:  # systems that allow no links
         shutil.copyfile(file, target)
