@@ -40,7 +40,7 @@ def looks(fonts: Sequence[Path]) -> Iterator[None]:
         names.append(font_manager.FontProperties(fname=file).get_name())
     size: Any = {
         "font.size": 7.5,
-        "axes.labelsize": 7.0,
+        "axes.labelsize": 6.5,
         "axes.linewidth": 0.6,
         "lines.linewidth": 1.2,
         "font.family": names,
@@ -65,7 +65,7 @@ def _svg(figure: Figure) -> str:
 
 def histogram(sample: Sample, words: Words) -> str:
     """Bars and the normal curve of the sample's mean and standard deviation."""
-    figure, axes = _axes(HALF_MM, 55.0)
+    figure, axes = _axes(HALF_MM, 50.0)
     edges, width = sample.edges_mm, np.diff(sample.edges_mm)
     axes.bar(edges[:-1], sample.counts, width, align="edge", color=BLUE, edgecolor="white", linewidth=0.4)
     if sample.sigma_mm > 0.0:
@@ -82,7 +82,7 @@ def histogram(sample: Sample, words: Words) -> str:
 
 def quantiles(sample: Sample, words: Words) -> str:
     """Normal Q–Q plot."""
-    figure, axes = _axes(HALF_MM, 55.0)
+    figure, axes = _axes(HALF_MM, 50.0)
     kept = shown_ranks(len(sample.ordered_mm), MOST_RANKS, TAILS)
     ends = sample.quantile[[0, -1]]
     axes.plot(
@@ -99,7 +99,7 @@ def quantiles(sample: Sample, words: Words) -> str:
 
 def cloud(found: Cloud, readings: ReadingRows, words: Words) -> tuple[str, list[str]]:
     """Readings, outliers and means over one cause; the picture and what its caption must say of what is shown."""
-    figure, axes = _axes(HALF_MM, 54.0)
+    figure, axes = _axes(HALF_MM, 47.0)
     outlier = readings.outlier[found.reading]
     part = shown(outlier, MOST_POINTS)
     plain = part.index[~outlier[part.index]]

@@ -191,8 +191,10 @@ def _environment(found: Laboratory, words: Words) -> list[Block]:
 
 def _condition(given: TemperatureCondition | HumidityCondition) -> str:
     if given.value is not None:
-        return f"{given.value:g} {given.unit}, u = {given.u:g} {'K' if given.unit != '%' else '%'}"
-    return f"{given.low:g} … {given.high:g} {given.unit}"
+        shown = f"{given.value:g} {given.unit}, u = {given.u:g} {'K' if given.unit != '%' else '%'}"
+    else:
+        shown = f"{given.low:g} … {given.high:g} {given.unit}"
+    return shown.replace(" ", "\u00a0")
 
 
 def people(content: Content) -> list[list[str]]:

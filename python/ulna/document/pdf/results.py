@@ -116,7 +116,7 @@ def quality(content: Content, words: Words) -> list[Block]:
     ]
     return [
         blocks.heading(words("section.quality")),
-        blocks.table(heads, rows, [1.5, 1.5, *[0] * 8], left=2, size_pt=7.5),
+        blocks.table(heads, rows, [2.1, 1.9, *[1] * 8], left=2, size_pt=7.5),
         blocks.paragraph(words("quality.note"), "note"),
         *said,
     ]

@@ -14,7 +14,7 @@ _CONTROLS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u
 #: letters in a row before a word may be broken anywhere; scripts that break anywhere by themselves count for nothing
 LONGEST = 22
 _LONG_WORD = re.compile(rf"[^\s\u200b\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef]{{{LONGEST + 1},}}")
-_PIECE = 8
+_PIECE = 10
 
 
 def clean(value: Any) -> str:
@@ -24,7 +24,9 @@ def clean(value: Any) -> str:
 
 
 def _pieces(word: str) -> str:
-    return "\u200b".join(word[k : k + _PIECE] for k in range(0, len(word), _PIECE))
+    """Better after a sign than in the middle of a word."""
+    parts = re.split(r"(?<=[/\\_.:,;-])", word)
+    return "\u200b".join(part[k : k + _PIECE] for part in parts for k in range(0, len(part), _PIECE))
 
 
 def name(value: Any) -> str:
@@ -41,4 +43,5 @@ def plain(value: Any) -> str:
 
 def words_for_paper(language: str) -> Words:
     """The words of a language; commands stand in quotation marks, as there is no other sign for them in text."""
-    return Words(language, lambda given: re.sub("`([^`]+)`", "“\\1”", given), plain)
+    quoted = "„\\1“" if language == "de" else "“\\1”"
+    return Words(language, lambda given: re.sub("`([^`]+)`", quoted, given), plain)
