@@ -10,12 +10,16 @@ import re
 import zlib
 from dataclasses import dataclass, field
 
+#: a string of bytes: parentheses in it are escaped or balanced (7.3.4.2), here up to three deep
+_LEVEL_3 = rb"\((?:\\.|[^\\()])*\)"
+_LEVEL_2 = rb"\((?:\\.|[^\\()]|" + _LEVEL_3 + rb")*\)"
+_STRING = rb"\((?:\\.|[^\\()]|" + _LEVEL_2 + rb")*\)"
 _TOKEN = re.compile(
     rb"(?P<font>/[!-~]+?)\s+[-\d.]+\s+Tf"
-    rb"|(?P<span>/Span\s*<</ActualText\s*(?:<(?P<hex>[0-9A-Fa-f]*)>|\((?P<literal>(?:\\.|[^\\)])*)\))\s*>>\s*BDC)"
+    rb"|(?P<span>/Span\s*<</ActualText\s*(?:<(?P<hex>[0-9A-Fa-f]*)>|(?P<literal>" + _STRING + rb"))\s*>>\s*BDC)"
     rb"|(?P<open>/[A-Za-z0-9]+\s*(?:<<.*?>>)?\s*(?:BDC|BMC))"
     rb"|(?P<close>\bEMC\b)"
-    rb"|(?P<string>\((?:\\.|[^\\)])*\)|<[0-9A-Fa-f]*>)"
+    rb"|(?P<string>" + _STRING + rb"|<[0-9A-Fa-f]*>)"
     rb"|(?P<move>\bTm\b|\bTd\b|\bT\*)",
     re.S,
 )
@@ -114,7 +118,7 @@ def _bytes(token: bytes) -> bytes:
 
 
 def _actual(given: bytes | None, literal: bytes | None) -> str:
-    data = bytes.fromhex(given.decode()) if given is not None else _bytes(b"(" + (literal or b"") + b")")
+    data = bytes.fromhex(given.decode()) if given is not None else _bytes(literal or b"()")
     return data[2:].decode("utf-16-be") if data.startswith(b"\xfe\xff") else data.decode("latin-1")
 
 
