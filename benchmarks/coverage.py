@@ -2,7 +2,8 @@
 
 Each arm is calibrated from a bar in 140 places with its own noise; then a point, a length and a ball are measured with
 fresh noise. Writes docs/benchmarks/coverage.md: the share of parameters, coordinates, lengths and diameters whose 95 %
-interval holds the truth, by the first order, and of some of the arms by Monte Carlo as well.
+interval holds the truth: by the first order, by Monte Carlo with parameters drawn from the covariance, and with whole
+calibrations redrawn (of the bar's lengths alone there, so that it takes minutes).
 """
 
 import argparse
@@ -15,11 +16,13 @@ import ulna
 from ulna.model import Arm
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
+from ulna.study import Study
 from ulna.uncertainty.assess import Assessment, assess
 from ulna.uncertainty.measurands import Touched
 from ulna.uncertainty.regions import contains
 from ulna.uncertainty.task import Task
 from ulna.virtual.arm import VirtualArm
+from ulna.work.recalibrations import recalibrations
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "benchmarks" / "coverage.md"
 BALL_MM = 30.0
@@ -42,68 +45,100 @@ def touches(kind: str, truth: VirtualArm, seed: int, rng: np.random.Generator) -
     return truth.places(ball, 1, seed, rng)[0], [0] * TOUCHES
 
 
-def measured(kind: str, arm: Arm, truth: VirtualArm, seed: int, trials: int) -> tuple[np.ndarray, Assessment]:
+def measured(
+    kind: str, arm: Arm, truth: VirtualArm, seed: int, trials: int, study: Study | None = None
+) -> tuple[np.ndarray, Assessment]:
     """The true values, and what is said of the measured ones."""
     rng = np.random.default_rng([seed, len(kind)])
     at_mm, feature = touches(kind, truth, seed, rng)
     touched = Touched(kind, np.array(feature))
     q_rad = truth.touch(at_mm, seed, rng)
     task = Task(touched, q_rad, "bent", kind, truth.errors.encoder_rad, truth.errors.seat_mm)
-    found = assess(arm, task, seed=seed, most_trials=trials)
+    found = assess(arm, task, study=study, seed=seed, most_trials=trials)
     return touched.values(at_mm[None])[0], found
 
 
-def shares(arms: int, trials: int) -> dict[str, float]:
+Held = dict[str, list[bool]]
+
+
+def by_covariance(truth: VirtualArm, seed: int, trials: int, held: Held) -> None:
+    """One arm: first order, and Monte Carlo with parameters from the covariance."""
+    true = dict(zip(truth.arm.parameter_names, truth.arm.parameters.tolist(), strict=True))
+    result = ulna.calibrate(trial.study_of(trial.start_of(truth, seed), readings.bars(truth, seed)))
+    rows = [row for row in result.parameters if row.u]
+    held.setdefault("parameters", []).extend(abs(row.value - true[row.name]) < 1.96 * row.u for row in rows if row.u)
+    for kind in ("point", "length", "ball"):
+        values, found = measured(kind, result.arm, truth, seed, trials)
+        for value, really in zip(found.values, values.tolist(), strict=True):
+            what = {"length": "lengths", "diameter": "diameters"}.get(value.name, f"{kind} coordinates")
+            held.setdefault(what, []).append(abs(value.value - really) < (value.expanded or 0.0))
+            if value.monte_carlo is not None:
+                low, high = value.monte_carlo.symmetric
+                held.setdefault(f"{what}, Monte Carlo", []).append(low < really < high)
+        if found.region is not None:
+            held.setdefault("points, ellipsoid", []).append(bool(contains(found.region, values[None])[0]))
+
+
+def by_calibrations(truth: VirtualArm, seed: int, runs: int, held: Held) -> None:
+    """One arm: whole calibrations redrawn."""
+    bar = readings.lengths_alone(readings.ball_bar(truth, seed))
+    study = trial.study_of(trial.start_of(truth, seed), bar)
+    result = ulna.calibrate(study)
+    again = recalibrations(study, result.arm, runs, seed)
+    ends = np.quantile(again.parameters, (0.025, 0.975), axis=0)
+    for column, (name, really) in enumerate(zip(truth.arm.parameter_names, truth.arm.parameters, strict=True)):
+        if np.isfinite(again.u[:, column]).all():
+            assert again.names[column] == name
+            inside = bool(ends[0, column] < really < ends[1, column])
+            held.setdefault("parameters, calibrations redrawn", []).append(inside)
+    for kind in ("point", "length"):
+        values, found = measured(kind, result.arm, truth, seed, runs, study)
+        for value, really in zip(found.values, values.tolist(), strict=True):
+            what = "lengths" if kind == "length" else "point coordinates"
+            if value.monte_carlo is not None:
+                low, high = value.monte_carlo.symmetric
+                held.setdefault(f"{what}, calibrations redrawn", []).append(low < really < high)
+
+
+def shares(arms: int, trials: int, runs: int) -> dict[str, float]:
     """What → share of intervals that hold the truth."""
     truth = true_arm(SEVEN)
-    true = dict(zip(truth.arm.parameter_names, truth.arm.parameters.tolist(), strict=True))
-    held: dict[str, list[bool]] = {}
+    held: Held = {}
     for seed in range(1, arms + 1):
-        study = trial.study_of(trial.start_of(truth, seed), readings.bars(truth, seed))
-        result = ulna.calibrate(study)
-        rows = [row for row in result.parameters if row.u]
-        held.setdefault("parameters", []).extend(
-            abs(row.value - true[row.name]) < 1.96 * row.u for row in rows if row.u
-        )
-        for kind in ("point", "length", "ball"):
-            values, found = measured(kind, result.arm, truth, seed, trials)
-            for value, really in zip(found.values, values.tolist(), strict=True):
-                what = {"length": "lengths", "diameter": "diameters"}.get(value.name, f"{kind} coordinates")
-                expanded = value.expanded_mm or 0.0
-                held.setdefault(what, []).append(abs(value.value_mm - really) < expanded)
-                if value.monte_carlo is not None:
-                    # the interval about the value as it was measured
-                    low, high = value.monte_carlo.symmetric
-                    held.setdefault(f"{what}, Monte Carlo", []).append(low < really < high)
-            if found.region is not None:
-                inside = contains(found.region, values[None])[0]
-                held.setdefault("points, ellipsoid", []).append(bool(inside))
-    return {what: float(np.mean(each)) for what, each in held.items()}
+        by_covariance(truth, seed, trials, held)
+        by_calibrations(truth, seed, runs, held)
+        if seed % 50 == 0:
+            print(f"{seed} of {arms} arms", file=sys.stderr)
+    return {
+        what: float(np.mean(held[what])) for what in sorted(held, key=lambda what: what.split(",")[0] != "parameters")
+    }
 
 
-def page(found: dict[int, dict[str, float]], trials: int) -> str:
-    """Markdown: one column for each number of arms."""
-    rows = list(dict.fromkeys(what for each in found.values() for what in each))
+def page(found: dict[str, float], arms: int, trials: int, runs: int) -> str:
+    """Markdown."""
     lines = [
         "<!-- Generated by `python -m benchmarks.coverage`; do not edit. -->\n",
-        f"Share in %, Monte Carlo of {trials:,} trials for each measurement:\n",
-        "| | " + " | ".join(f"{arms:,} arms" for arms in found) + " |",
-        "|---" + "|---:" * len(found) + "|",
+        f"Share of {arms:,} arms in %; Monte Carlo of {trials:,} trials for each measurement, or of {runs:,} whole "
+        "calibrations:\n",
+        "| | first order | Monte Carlo | calibrations redrawn |",
+        "|---|---:|---:|---:|",
     ]
-    for what in rows:
-        cells = (f"{100 * each[what]:.1f}" if what in each else "–" for each in found.values())
-        lines.append(f"| {what} | " + " | ".join(cells) + " |")
+    for what in dict.fromkeys(name.split(",")[0] for name in found if name != "points, ellipsoid"):
+        each = (what, f"{what}, Monte Carlo", f"{what}, calibrations redrawn")
+        lines.append(
+            f"| {what} | " + " | ".join(f"{100 * found[key]:.1f}" if key in found else "–" for key in each) + " |"
+        )
+    lines.append(f"| points, ellipsoid | {100 * found['points, ellipsoid']:.1f} | – | – |")
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coverage", description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--arms", type=int, default=1000, help="by the first order")
-    parser.add_argument("--monte-carlo", type=int, default=250, help="of them by Monte Carlo as well")
+    parser.add_argument("--arms", type=int, default=1000)
     parser.add_argument("--trials", type=int, default=10_000, help="of Monte Carlo, for each measurement")
+    parser.add_argument("--runs", type=int, default=2000, help="calibrations redrawn, for each arm")
     given = parser.parse_args()
-    found = {given.arms: shares(given.arms, 0), given.monte_carlo: shares(given.monte_carlo, given.trials)}
-    text = page(found, given.trials)
+    text = page(shares(given.arms, given.trials, given.runs), given.arms, given.trials, given.runs)
     print(text)
     PAGE.write_text(text, encoding="utf-8")
     print(f"written: {PAGE.name}", file=sys.stderr)

@@ -80,6 +80,14 @@ def test_what_a_study_file_is_told(tmp_path: Path, case: str) -> None:
     says(small.error(), str(tmp_path), *fragments)
 
 
+def test_a_key_of_another_kind_is_not_suggested_to_itself(tmp_path: Path) -> None:
+    small = SmallStudy(tmp_path)
+    small.swap("study.toml", 'kind = "bar"', 'kind = "seat"')
+    told = small.error()
+    says(told, "unknown key 'artefact.bar.length'")
+    assert "Did you mean 'length'" not in told
+
+
 def test_a_device_that_never_ends(tmp_path: Path) -> None:
     # stands for /dev/zero: a file with a hole, of which no more than the limit is read
     path = tmp_path / "study.toml"

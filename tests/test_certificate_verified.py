@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +61,10 @@ def state(name: str, *figures: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def verification(*states: dict[str, Any], arm: str = "Arms P07-0815", arm_file: str | None = SHA256) -> dict[str, Any]:
+def verification(
+    *states: dict[str, Any], arm: str = "Arms P07-0815", arms: Sequence[str] = (SHA256,)
+) -> dict[str, Any]:
+    points = "encoders" if arms else "xyz"
     return {
         "format": "ulna-verification/1",
         "arm": arm,
@@ -82,10 +85,10 @@ def verification(*states: dict[str, Any], arm: str = "Arms P07-0815", arm_file: 
             "program": "ulna",
             "version": "0.1.0",
             "plan": {"path": "/somewhere/verify.toml", "sha256": "1"},
-            "arm_file": None if arm_file is None else {"path": "/somewhere/arm.json", "sha256": arm_file},
+            "arms": [{"path": f"/somewhere/{each}.json", "sha256": each} for each in arms],
             "files": [
-                {"state": "as-found", "path": "/somewhere/found.csv", "sha256": "2", "rows": 1, "points": "encoders"},
-                {"state": "as-left", "path": "/somewhere/left.csv", "sha256": "3", "rows": 1, "points": "encoders"},
+                {"state": "as-found", "path": "/somewhere/found.csv", "sha256": "2", "rows": 1, "points": points},
+                {"state": "as-left", "path": "/somewhere/left.csv", "sha256": "3", "rows": 1, "points": points},
             ],
             "warnings": [],
             "time": "2026-03-31T12:00:00+02:00",
@@ -138,7 +141,7 @@ def test_what_it_says_arrives(made: Made) -> None:
 
 def test_both_states_from_one_file_or_two(made: Made) -> None:
     found, left = state("as-found", figure("E_Uni", 0.2, "fail")), state("as-left", figure("E_Uni", 0.01, "pass"))
-    for documents in ([verification(found, left)], [verification(found, arm_file=START), verification(left)]):
+    for documents in ([verification(found, left)], [verification(found, arms=[START]), verification(left)]):
         root = reading.tree(made(*documents))
         words = root.findall("dcc:administrativeData/dcc:statements/dcc:statement/dcc:conformity", reading.NS)
         assert [word.text for word in words] == ["fail", "pass"]
@@ -150,28 +153,56 @@ def test_both_states_from_one_file_or_two(made: Made) -> None:
 
 
 def test_coordinates_of_an_arm_are_known_by_its_serial_number(made: Made) -> None:
-    assert made(verification(arm="Example Arms Platinum, No. P07-0815", arm_file=None))
-    assert made(verification(arm=json.loads(RESULT.read_text(encoding="utf-8"))["arm"]["name"], arm_file=None))
+    assert made(verification(arm="Example Arms Platinum, No. P07-0815", arms=[]))
+    assert made(verification(arm=json.loads(RESULT.read_text(encoding="utf-8"))["arm"]["name"], arms=[]))
     for other in ("Example Arms Platinum, No. P07-08151", "XP07-0815", "not named"):
         with pytest.raises(
             UlnaInputError, match=r"tests are of '.*', the certificate is about serial number 'P07-0815'"
         ):
-            made(verification(arm=other, arm_file=None))
+            made(verification(arm=other, arms=[]))
 
 
-@pytest.mark.parametrize(("name", "arm_file"), [("as-left", START), ("as-left", "9"), ("as-found", "9")])
-def test_tests_with_another_arm_are_refused(made: Made, name: str, arm_file: str) -> None:
-    with pytest.raises(
-        UlnaInputError, match=rf"the {name} values were computed with /somewhere/arm.json, which is another"
-    ):
-        made(verification(state(name, figure("E_Uni", 0.01, "pass")), arm_file=arm_file))
+FOUND, LEFT = state("as-found", figure("E_Uni", 0.01, "pass")), state("as-left", figure("E_Uni", 0.01, "pass"))
+
+
+@pytest.mark.parametrize(
+    ("states", "arms"),
+    [
+        ([LEFT], [START]),
+        ([LEFT], [SHA256, START]),
+        ([LEFT], ["9"]),
+        ([FOUND], ["9"]),
+        ([FOUND], [START, "9"]),
+        ([FOUND, LEFT], [START]),
+        ([FOUND, LEFT], [SHA256, "9"]),
+    ],
+)
+def test_tests_with_another_arm_are_refused(made: Made, states: list[dict[str, Any]], arms: list[str]) -> None:
+    with pytest.raises(UlnaInputError, match=r"'provenance\.arms': values were computed with /somewhere/.*another arm"):
+        made(verification(*states, arms=arms))
+
+
+@pytest.mark.parametrize(
+    ("states", "arms"),
+    [([FOUND], [START]), ([FOUND], [SHA256]), ([FOUND, LEFT], [START, SHA256]), ([FOUND, LEFT], [SHA256])],
+)
+def test_tests_with_this_arm_are_taken(made: Made, states: list[dict[str, Any]], arms: list[str]) -> None:
+    assert made(verification(*states, arms=arms))
+
+
+def test_coordinates_beside_encoder_readings_are_looked_at_too(made: Made) -> None:
+    document = verification(arm="another")
+    assert made(document)
+    document["provenance"]["files"][0]["points"] = "xyz"
+    with pytest.raises(UlnaInputError, match=r"tests are of 'another'"):
+        made(document)
 
 
 def test_the_arm_file_beside_the_result_is_the_same_arm(tmp_path: Path) -> None:
     (tmp_path / "result.json").write_bytes(RESULT.read_bytes())
     (tmp_path / "arm.toml").write_text("whatever stands in it")
     digest = hashlib.sha256(b"whatever stands in it").hexdigest()
-    (tmp_path / "verification.json").write_text(json.dumps(verification(arm_file=digest)))
+    (tmp_path / "verification.json").write_text(json.dumps(verification(arms=[digest])))
     assert dcc_certificate(tmp_path, EXAMPLE, [tmp_path / "verification.json"]).tested[0].state == "as-left"
 
 
@@ -182,7 +213,12 @@ DAMAGED: dict[str, tuple[dict[str, Any], str]] = {
     "a verdict without limit": (figure("E_Uni", 0.01, "pass", limit=None), "no limit or no guard band"),
     "another U": (figure("E_Uni", 0.01, "pass", expanded=0.001), "figure E_Uni: expanded is not k times u"),
     "U of nothing": (figure("E_Uni", 0.01, "pass", u=None), "expanded is not k times u"),
-    "a text": (figure("E_Uni", 0.01, "pass", value="0.01"), "'states.1.tests.1.figures.1.value'"),
+    "a negative uncertainty": (
+        figure("E_Uni", 0.01, None, limit=None, u=-0.001, expanded=-0.002),
+        "the uncertainty is -0.001 mm with k = 2",
+    ),
+    "no probability": (figure("E_Uni", 0.01, "pass", p=1.5), "k = 2 and p = 1.5 are no coverage factor"),
+    "a text": (figure("E_Uni", 0.01, "pass") | {"value": "0.01"}, "'states.1.tests.1.figures.1.value'"),
 }
 
 
@@ -193,6 +229,18 @@ def test_no_verdict_that_the_numbers_do_not_bear_out(made: Made, case: str) -> N
         made(verification(state("as-left", figures)))
     assert "verification-0.json" in str(caught.value)
     assert expected in str(caught.value)
+
+
+def test_a_state_without_figures(made: Made) -> None:
+    with pytest.raises(UlnaInputError, match=r"state 'as-left' has no figure"):
+        made(verification(state("as-left")))
+
+
+def test_a_temperature_that_is_none(made: Made) -> None:
+    document = verification()
+    document["environment"]["temperature"] = {"value": "warm", "u": 0.1}
+    with pytest.raises(UlnaInputError, match=r"verification-0\.json: key 'temperature\.value': got 'warm'"):
+        made(document)
 
 
 def test_it_is_valid(made: Made, shared_data: Path) -> None:

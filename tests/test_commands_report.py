@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 from tests.cli_runs import assert_bad_input, run, write_lengths
 from tests.reports import calibrated
+from tests.test_document_html import Page, figures
+
+from ulna.importers.mukca import import_mukca
 
 
 @pytest.fixture(scope="module")
@@ -54,3 +58,26 @@ def test_a_study_that_changed_is_told(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "The study has changed since the calibration" in done.stderr
     assert "start.toml" in done.stderr
+
+
+def test_the_machine_form_says_what_is_missing(result, tmp_path):
+    done = run("report", result, "-o", tmp_path / "r.html", "--json")
+    found = json.loads(done.stdout)
+    assert found["files"] == {"html": str(tmp_path / "r.html")}
+    assert found["missing"]["held-out"] == "held-out.none"
+    assert "study" not in found["missing"]
+
+
+def test_a_report_of_real_readings(shared_data, tmp_path):
+    """497 touches of a robot in eight places, published by others: only what they lack is missing."""
+    import_mukca(shared_data / "mukca" / "panda_2_clean", tmp_path / "panda")
+    done = run("report", calibrated(tmp_path / "panda" / "study.toml"), "-o", tmp_path / "r.html", "--json")
+    assert done.returncode == 0, done.stderr
+    missing = json.loads(done.stdout)["missing"]
+    assert set(missing) == {"held-out", "temperature", "verification", "laboratory"}
+    page = Page((tmp_path / "r.html").read_text(encoding="utf-8"))
+    names = [figure["name"] for figure in figures(page)]
+    assert {f"joint-{k}" for k in range(1, 8)} | {"space", "correlation", "lengths"} <= set(names)
+    words = " ".join("".join(page.words).split())
+    assert "Readings: 497" in words
+    assert "determine 23 of 27 free parameters" in words

@@ -163,7 +163,8 @@ def test_stated_noise_has_the_normal_factor(tmp_path):
     assert content.environment.seat_mm == 0.01
     lost = [row for row in content.parameters.rows if row.status == "not-determined"]
     assert {row.name for row in lost} == {"joint.1.theta0", "joint.1.d"}
-    assert all(row.reason for row in lost)
+    assert {row.cause for row in lost} == {"base-frame"}
+    assert all("base frame" in row.reason for row in lost)
     assert not {"joint.1.theta0", "joint.1.d"} & set(content.parameters.correlation_names)
 
 

@@ -304,7 +304,7 @@ def test_a_report_of_100_000_readings_is_small_and_says_what_it_shows(hostile):
     assert len(text.encode()) < MEGABYTES_10
     page = Page(text)
     words = " ".join("".join(page.words).split())
-    assert "Shown: every 67th of 100000 readings and all outliers" in words
+    assert "Shown: every 67th of 100000 points and all outliers" in words
     assert "Each pair of bars stands for 167 readings in a row" in words
     assert "The 500 placements with the largest errors of 50000" in words
     assert f"{len(content.outliers) - 2000} more are in the result" in words

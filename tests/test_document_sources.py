@@ -10,10 +10,12 @@ import polars as pl
 import pytest
 from tests.cli_runs import platinum, write_lengths
 from tests.reports import calibrated, seats_study
+from tests.test_document_html import Page
 
 import ulna
 from ulna import UlnaInputError
 from ulna.document.gather import gather
+from ulna.document.html.page import render
 
 FOSSILS = Path(__file__).resolve().parent / "data" / "fossils"
 
@@ -181,3 +183,25 @@ def test_surfaces_have_no_vectors(tmp_path):
     )
     worst = next(row for row in content.quality if row.quantity == "diameter_error")
     assert np.isnan(worst.after.two_sigma_mm)
+
+
+def test_as_many_readings_as_parameters(tmp_path):
+    """No degrees of freedom: no uncertainty can be estimated, and the result and its report say so."""
+    study = write_lengths(tmp_path, rows=25, fit='hold = ["joint.1.theta0", "joint.1.d"]')
+    content = gather(calibrated(study))
+    assert content.fit.degrees_of_freedom == 0
+    assert np.isnan(content.parameters.k)
+    assert all(row.u is None and row.expanded is None for row in content.parameters.rows)
+    assert content.parameters.correlation_names == []
+    assert content.missing["correlation"].key == "missing.correlation"
+    assert content.identification.weak == []
+    words = " ".join("".join(Page(render(content)).words).split())
+    assert "There are no degrees of freedom, so no uncertainty can be estimated." in words
+
+
+def test_nothing_fitted(tmp_path):
+    content = gather(calibrated(write_lengths(tmp_path, fit='hold = ["*"]')))
+    assert {"correlation", "observability"} <= set(content.missing)
+    words = " ".join("".join(Page(render(content)).words).split())
+    assert "Nothing was fitted: every parameter is held." in words
+    assert "there are no observability indices" in words

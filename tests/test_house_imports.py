@@ -16,7 +16,7 @@ PYTHON_LAYERS = [
     {"model"},
     {"frames"},
     {"study"},
-    {"parameters", "options", "simulation", "plan_spec"},
+    {"parameters", "options", "simulation", "plan_spec", "performance"},
     {"files"},
     {
         "assembly",

@@ -30,8 +30,14 @@ PLATE = Artefact("plate", "points", {"a": (0.0, 0.0, 0.0), "b": (200.0, 0.0, 0.0
 FIXED = replace(PLATE, features={"a": (500.0, 100.0, 300.0), "b": (300.0, -350.0, 500.0)}, frame="arm")
 
 
+SPHERE = Artefact("ball", "sphere", {}, diameter_mm=30.0)
+HOLLOW = replace(SPHERE, inside=True)
+PLANE = Artefact("flat", "plane", {})
+
+
 def limited() -> ulna.Arm:
     arm = platinum()
+    arm = replace(arm, probes={name: replace(probe, ball_mm=6.0) for name, probe in arm.probes.items()})
     joints = []
     for k, joint in enumerate(arm.joints):
         limits = (joint.theta0_rad - 0.3, joint.theta0_rad + 2.7) if k in (1, 3, 5) else (-np.pi, np.pi)
@@ -45,7 +51,17 @@ def spec(artefact: Artefact = BAR, **others: object) -> PlanSpec:
 
 
 @pytest.mark.parametrize(
-    ("artefact", "touches", "rows"), [(BAR, 1, 1), (BAR, 3, 13), (SEAT, 4, 9), (PLATE, 1, 3), (FIXED, 1, 6)]
+    ("artefact", "touches", "rows"),
+    [
+        (BAR, 1, 1),
+        (BAR, 3, 13),
+        (SEAT, 4, 9),
+        (PLATE, 1, 3),
+        (FIXED, 1, 6),
+        (SPHERE, 9, 6),
+        (HOLLOW, 9, 6),
+        (PLANE, 7, 4),
+    ],
 )
 def test_the_rows_of_measurements_say_what_the_fit_says_of_them(artefact: Artefact, touches: int, rows: int) -> None:
     arm, asked = limited(), spec(artefact, touches=touches, candidates=400)
@@ -54,7 +70,7 @@ def test_the_rows_of_measurements_say_what_the_fit_says_of_them(artefact: Artefa
     taken = draw(asked, mover, 0, np.random.default_rng(1)).select(np.arange(0, 400, 4))
     found = candidate_rows(asked, arm, 0, free, taken)
     assert found.shape == (100, rows, 27)
-    problem = problem_of(arm, asked, 0, taken)
+    problem = problem_of(arm, asked, 0, taken.poses(np.arange(len(taken))))
     fitted = _core.fit(problem, np.zeros(27, dtype=bool))
     natural = np.where(np.array(arm.parameter_units) == "mm", 1.0, 1400.0)
     coordinates = Coordinates.of(found.reshape(-1, 27), natural)
@@ -236,14 +252,49 @@ def test_the_command_writes_a_list_to_follow(tmp_path: Path) -> None:
         ('kind = "bar"\nlength = 443.172', 'kind = "seat"', "Raise touches"),
         ("443.172", "9000.0", "Take a smaller one"),
         ("trials = 10", "criterion = 'F'", "plan.criterion"),
+        ('kind = "bar"', 'kind = "length"', "unknown key|is a length"),
+        ("443.172", "443.172\nfit = true\nu = 0.01", "has fit = true"),
+        ('kind = "bar"\nlength = 443.172', 'kind = "sphere"\ndiameter = 30', "whose ball has no diameter"),
+        ('kind = "bar"\nlength = 443.172\n', 'kind = "plane"\n', "tell nothing"),
+        ("choose = 40\ncandidates = 1000", "choose = 40\ncandidates = 900000\ntouches = 50", "Lower candidates"),
     ],
 )
 def test_what_cannot_be_planned_is_told(tmp_path: Path, old: str, new: str, says: str) -> None:
     from ulna.files.plan import load_plan_spec
 
-    (tmp_path / "plan.toml").write_text(SPEC.replace(old, new))
+    text, arm = SPEC.replace(old, new), limited()
+    if "no diameter" in says:
+        arm = replace(arm, probes={name: replace(probe, ball_mm=None) for name, probe in arm.probes.items()})
+    if "tell nothing" in says:
+        text = text.replace("[plan]", "[plan]\ntouches = 3")
+    if "Lower" in says:
+        text = text.replace('kind = "bar"\nlength = 443.172\n', 'kind = "plane"\n')
+    (tmp_path / "plan.toml").write_text(text)
     with pytest.raises(UlnaInputError, match=says):
-        ulna.plan(limited(), load_plan_spec(tmp_path / "plan.toml", limited()))
+        ulna.plan(arm, load_plan_spec(tmp_path / "plan.toml", arm))
+
+
+def test_a_surface_is_planned_too(tmp_path: Path) -> None:
+    """The normals in the list are those of the surface, and what was chosen is better than chance by simulation."""
+    asked = spec(PLANE, touches=9, candidates=2000, choose=20, trials=60)
+    planned = ulna.plan(limited(), asked)
+    assert planned.trial is not None
+    assert planned.trial.gain > 0.1
+    planned.save(tmp_path / "plane")
+    steps = pl.read_csv(tmp_path / "plane" / "plan.csv")
+    assert len(steps) == 180
+    for one in steps.partition_by("placement"):
+        at_mm = one.select("x", "y", "z").to_numpy()
+        normal = np.linalg.svd(at_mm - at_mm.mean(axis=0))[2][2]
+        outward = one.select("direction_x", "direction_y", "direction_z").to_numpy()
+        assert np.abs(np.abs(outward @ normal) - 1.0).max() < 1e-3
+    ball = ulna.plan(limited(), spec(SPHERE, touches=9, candidates=2000, choose=20))
+    ball.save(tmp_path / "ball")
+    steps = pl.read_csv(tmp_path / "ball" / "plan.csv")
+    outward = steps.select("direction_x", "direction_y", "direction_z").to_numpy()
+    centres = steps.select("x", "y", "z").to_numpy() - 18.0 * outward  # 30 mm, and a ball of 6 mm
+    for _, one in steps.with_row_index().group_by("placement"):
+        assert np.ptp(centres[one["index"].to_numpy()], axis=0).max() < 0.02
 
 
 def test_an_arm_without_limits_is_refused() -> None:

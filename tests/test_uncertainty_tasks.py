@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
+from ulna.errors import UlnaInputError
 from ulna.files.models import fill
 from ulna.files.task import TaskFile
 from ulna.files.toml import read_toml
@@ -105,10 +106,10 @@ def test_monte_carlo_agrees_with_the_first_order_where_all_is_linear(calibrated)
     assert value.monte_carlo is not None
     assert value.monte_carlo.settled
     assert value.first_order_is_good
-    assert value.monte_carlo.u == pytest.approx(value.u_mm, rel=0.02)
+    assert value.monte_carlo.u == pytest.approx(value.u, rel=0.02)
     low, high = value.monte_carlo.symmetric
-    assert (high - low) / 2 == pytest.approx(value.expanded_mm, rel=0.03)
-    assert value.u_mm**2 == pytest.approx(sum(u**2 for u in value.budget.values()))
+    assert (high - low) / 2 == pytest.approx(value.expanded, rel=0.03)
+    assert value.u**2 == pytest.approx(sum(u**2 for u in value.budget.values()))
     assert set(value.budget) == {"parameters", "encoders", "touch"}
 
 
@@ -166,8 +167,8 @@ def test_repeated_calibrations_start_where_the_calibration_ended(calibrated) -> 
     task = task_of("length", [0, 1], poses(2, 6))
     (redrawn,) = assess(arm, task, study=drawn, seed=2, most_trials=10_000).values
     assert redrawn.monte_carlo is not None
-    assert redrawn.monte_carlo.y == pytest.approx(redrawn.value_mm, abs=0.1 * (redrawn.u_mm or 0.0))
-    assert redrawn.monte_carlo.u == pytest.approx(redrawn.u_mm, rel=0.05)
+    assert redrawn.monte_carlo.y == pytest.approx(redrawn.value, abs=0.1 * (redrawn.u or 0.0))
+    assert redrawn.monte_carlo.u == pytest.approx(redrawn.u, rel=0.05)
 
 
 def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
@@ -178,7 +179,7 @@ def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
     assert value.k == pytest.approx(2.2281, abs=1e-4)
     assert value.monte_carlo is not None
     low, high = value.monte_carlo.symmetric
-    assert (high - low) / 2 == pytest.approx(value.expanded_mm, rel=0.03)
+    assert (high - low) / 2 == pytest.approx(value.expanded, rel=0.03)
     (stated,) = assess(arm, replace(task, degrees_of_freedom=np.inf), most_trials=0).values
     assert stated.k == pytest.approx(1.95996, abs=1e-5)
 
@@ -215,15 +216,16 @@ def test_held_parameters_count_as_exact_and_are_told(calibrated) -> None:
 def test_intervals_hold_the_truth() -> None:
     """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage.py does it
     a thousand times."""
-    shares = trial_shares(150)
-    for what, share in shares.items():
-        assert share == pytest.approx(0.95, abs=0.045), what
+    from benchmarks.coverage import by_calibrations, by_covariance
 
-
-def trial_shares(arms: int) -> dict[str, float]:
-    from benchmarks.coverage import shares
-
-    return shares(arms, trials=0)
+    held: dict[str, list[bool]] = {}
+    truth = true_arm(SEVEN)
+    for seed in range(1, 151):
+        by_covariance(truth, seed, 0, held)
+    for seed in range(1, 61):
+        by_calibrations(truth, seed, 200, held)
+    for what, each in held.items():
+        assert np.mean(each) == pytest.approx(0.95, abs=0.045), what
 
 
 def straight() -> tuple[Arm, Arm]:
@@ -239,9 +241,9 @@ def test_what_was_not_determined_has_no_figure() -> None:
     arm, other = straight()
     q_rad = poses(2, 9)
     (good,) = assess(arm, task_of("length", [0, 1], q_rad), most_trials=0).values
-    assert good.u_mm is not None
+    assert good.u is not None
     (lost,) = assess(other, task_of("length", [0, 1], q_rad)).values
-    assert (lost.u_mm, lost.expanded_mm, lost.monte_carlo, lost.budget) == (None, None, None, {})
+    assert (lost.u, lost.expanded, lost.monte_carlo, lost.budget) == (None, None, None, {})
     assert {direction["cause"] for direction in lost.not_determined} == {"probe-on-axis"}
 
 
@@ -257,13 +259,13 @@ def test_the_command(result: Path, root: Path, tmp_path: Path) -> None:
     done = run("uncertainty", result / "result.json", task, "-o", tmp_path / "u")
     assert done.returncode == 0, done.stderr
     assert max(map(len, done.stdout.splitlines())) <= 80
-    for words in ("the calibration's parameters", "first order good", "Left out", "eccentric encoders"):
+    for words in ("the arm's parameters", "first order good", "Left out", "eccentric encoders"):
         assert words in done.stdout
     written = json.loads((tmp_path / "u" / "uncertainty.json").read_text("utf-8"))
     printed = strict_json(run("uncertainty", result, task, "--json").stdout)
     assert printed == written
     (value,) = written["values"]
-    assert abs(value["value_mm"] - 443.172) < 2 * value["expanded_mm"]
+    assert abs(value["value"] - 443.172) < 2 * value["expanded"]
 
 
 def test_a_ball_from_a_file(result: Path, tmp_path: Path) -> None:
@@ -281,8 +283,59 @@ def test_a_ball_from_a_file(result: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     found = strict_json(done.stdout)
     assert [value["name"] for value in found["values"]] == ["x", "y", "z", "diameter"]
-    assert found["values"][3]["value_mm"] == pytest.approx(24.0, abs=0.03)  # the probe's own 6 mm taken off
+    assert found["values"][3]["value"] == pytest.approx(24.0, abs=0.03)  # the probe's own 6 mm taken off
     assert found["values"][3]["k"] == pytest.approx(2.5758, abs=1e-4)
+
+
+def touched_plane(seed: int, count: int = 12) -> np.ndarray:
+    """(count, 7) encoder angles on a tilted plate of 200 mm square; its normal towards the base is (-2, -1, -2) / 3."""
+    truth = true_arm(SEVEN)
+    rng = np.random.default_rng(seed)
+    along = np.array([[1.0, -2.0, 0.0], [4.0, 2.0, -5.0]])
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    at_mm = 450.0 * np.array([2.0, 1.0, 2.0]) / 3.0 + rng.uniform(-100, 100, (count, 2)) @ along
+    return truth.touch(at_mm, seed, rng)
+
+
+def test_a_plane_its_normal_and_its_form(calibrated) -> None:
+    _, arm = calibrated
+    q_rad = touched_plane(1)
+    plane = assess(arm, task_of("plane", [0] * 12, q_rad), seed=1)
+    assert [value.unit for value in plane.values] == ["1", "1", "1", "mm"]
+    for value, really in zip(plane.values, (-2 / 3, -1 / 3, -2 / 3, 450.0), strict=True):
+        assert value.expanded is not None
+        assert abs(value.value - really) < 1.5 * value.expanded
+        assert value.monte_carlo is not None
+        assert value.monte_carlo.u == pytest.approx(value.u, rel=0.03)
+    # a normal has length 1: along itself it cannot err
+    normal = np.array([value.value for value in plane.values[:3]])
+    assert normal @ plane.covariance[:3, :3] @ normal < 1e-6 * np.trace(plane.covariance[:3, :3])
+    # a form is the larger the more it is disturbed: trials lie above the value, and first order does not know it
+    (form,) = assess(arm, task_of("flatness", [0] * 12, q_rad), seed=1).values
+    assert form.monte_carlo is not None
+    assert form.monte_carlo.y > form.value + 0.3 * (form.u or 0.0)
+    assert form.first_order_is_good is False
+
+
+def test_form_of_a_ball(calibrated) -> None:
+    _, arm = calibrated
+    truth, rng = true_arm(SEVEN), np.random.default_rng(8)
+    corners = np.concatenate([np.eye(3), -np.eye(3)])
+    q_rad = truth.touch(np.array([400.0, 200.0, 300.0]) + 15.0 * corners, 2, rng)
+    (form,) = assess(arm, task_of("sphericity", [0] * 6, q_rad), most_trials=0).values
+    away = np.linalg.norm(arm.tip(q_rad) - MEASURANDS["ball"].of(arm.tip(q_rad)[None])[0, :3], axis=1)
+    assert form.value == pytest.approx(np.ptp(away), abs=1e-9)
+
+
+def test_touches_on_a_line_say_no_plane(calibrated) -> None:
+    _, arm = calibrated
+    truth, rng = true_arm(SEVEN), np.random.default_rng(9)
+    line = np.array([400.0, 200.0, 300.0]) + np.outer(np.linspace(0, 100, 5), [1.0, 0.0, 0.0])
+    q_rad = truth.touch(line, 3, rng)
+    with pytest.raises(UlnaInputError, match="hardly say what is asked, a plane"):
+        first_order(arm, task_of("plane", [0] * 5, np.repeat(q_rad[:1], 5, axis=0) + 1e-9 * rng.random((5, 7))))
+    found = first_order(arm, task_of("plane", [0] * 5, q_rad))
+    assert np.sqrt(found.covariance.diagonal()[:3].max()) > 0.1  # about the line it may turn
 
 
 def test_wrong_tasks(result: Path, tmp_path: Path) -> None:
@@ -324,7 +377,7 @@ def test_options_of_the_fit_do_not_matter_to_the_type(calibrated) -> None:
     held = ulna.calibrate(replace(study, fit=FitOptions(hold=["joint.3.*", "joint.1.theta0", "joint.1.d"])))
     (value,) = assess(held.arm, task_of("length", [0, 1], poses(2, 10)), seed=1).values
     assert value.monte_carlo is not None
-    assert value.monte_carlo.u == pytest.approx(value.u_mm, rel=0.02)
+    assert value.monte_carlo.u == pytest.approx(value.u, rel=0.02)
 
 
 def test_the_fossil_loads() -> None:

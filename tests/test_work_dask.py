@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from distributed import Client, LocalCluster
-from tests.cli_runs import run
+from tests.cli_runs import assert_bad_input, run, strict_json
 from tests.test_work import same, study_and_truth
 
 from ulna.work.pieces import workers_at
@@ -91,3 +91,36 @@ def test_a_folder_of_studies_on_a_cluster(cluster, tmp_path, root) -> None:
     for name in ("one", "two"):
         one, other = (tmp_path / where / name / "study" / "arm.toml" for where in ("here", "there"))
         assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_plan_and_whole_calibrations_redrawn_on_a_cluster(cluster, tmp_path, root) -> None:
+    """The same figures as from threads; finished work is kept, and the same command goes on from it."""
+    examples = root / "examples" / "platinum"
+    (tmp_path / "plan.toml").write_text(
+        (examples / "plan.toml").read_text().replace("[plan]", "[plan]\ncandidates = 8000\ntrials = 60")
+    )
+    ask = ("plan", examples / "platinum.toml", tmp_path / "plan.toml", "--json")
+    here = run(*ask)
+    there = run(*ask, "--dask", cluster.scheduler_address, "--keep", tmp_path / "trial")
+    assert (here.returncode, there.returncode) == (0, 0), there.stderr
+    mine, theirs = strict_json(here.stdout), strict_json(there.stdout)
+    for document in (mine, theirs):
+        del document["seconds"]
+    assert mine == theirs
+    assert len(list((tmp_path / "trial").glob("piece-*.npz"))) == 7  # 50 and 10; five times 12
+
+    assert run("calibrate", examples / "study.toml", "-o", tmp_path / "out").returncode == 0
+    (tmp_path / "length.csv").write_bytes((examples / "length.csv").read_bytes())
+    (tmp_path / "length.toml").write_text("digits = 1\n" + (examples / "length.toml").read_text())
+    ask = ("uncertainty", tmp_path / "out", tmp_path / "length.toml", "--json", "--study", examples / "study.toml")
+    ask = (*ask, "--trials", "1200")
+    here = run(*ask)
+    there = run(*ask, "--dask", cluster.scheduler_address, "--keep", tmp_path / "kept")
+    assert (here.returncode, there.returncode) == (0, 0), there.stderr
+    assert here.stdout == there.stdout
+    assert len(list((tmp_path / "kept").glob("piece-*.npz"))) == 3
+    again = run(*ask, "--keep", tmp_path / "kept")
+    assert again.stdout == here.stdout
+    other = run(*ask, "--keep", tmp_path / "kept", "--seed", "1")
+    assert_bad_input(other, "kept", "keeps another job's work", "seed")
+    assert_bad_input(run(*ask[:4], "--keep", tmp_path / "kept"), "finished calibrations", "--study")

@@ -12,6 +12,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+from docs_artefacts import artefact_table
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
@@ -22,6 +23,8 @@ EXAMPLES_OUTPUT = ROOT / "docs" / "examples" / "output"
 #: an example that prints this as its exit code says that its data are not at hand
 SKIPPED = 77
 
+#: the arm that plays what is shown of acceptance tests
+TRUTH = "examples/platinum/truth.toml"
 #: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
 COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "identify.txt": (["identify", "examples/platinum/study.toml"], None),
@@ -32,18 +35,23 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
-    "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
-    "certificate.txt": (
+    "performance.txt": (
         [
-            "certificate",
-            "out/demo/result.json",
-            "examples/platinum/laboratory.toml",
-            "--dcc",
-            "-o",
-            "out/certificate.xml",
+            *("uncertainty", "out/demo/arm.toml", "examples/platinum/length.toml"),
+            *("--performance", "examples/platinum/performance.toml", "--trials", "5000"),
         ],
         None,
     ),
+    "volume.txt": (
+        ["uncertainty", "out/demo/result.json", "examples/platinum/volume.toml", "-o", "out/volume"],
+        None,
+    ),
+    "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
+    "verify-plan.txt": (
+        f"verify --make-plan iso-10360-12 --play {TRUTH} --seed 1 -o out/acceptance".split(),
+        None,
+    ),
+    "verify.txt": (["verify", "out/demo/result.json", "out/acceptance/plan.toml", "-o", "out/verified"], None),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
@@ -58,8 +66,10 @@ OUTCOMES = "\nOn the same two arms"
 
 #: pictures that a command above makes → where the docs have them
 PICTURES = {
+    "out/volume/volume.png": ROOT / "docs" / "pictures" / "volume.png",
     "out/plan/places.png": ROOT / "docs" / "pictures" / "plan-places.png",
     "out/plan/curve.png": ROOT / "docs" / "pictures" / "plan-curve.png",
+    "out/verified/lengths.png": ROOT / "docs" / "pictures" / "verify-lengths.png",
     "out/cheng2011/bars.png": ROOT / "docs" / "pictures" / "cheng2011-bars.png",
     "out/cheng2011/convergence.png": ROOT / "docs" / "pictures" / "cheng2011-convergence.png",
 }
@@ -75,12 +85,37 @@ def first_lines(text: str, lines: int) -> str:
     return "".join(text.splitlines(keepends=True)[:lines]) + "…\n"
 
 
-def certificate_excerpt(text: str) -> str:
-    """The list of fitted parameters, up to the second column of its covariance; long lists are cut short."""
-    begin = text.rindex("\n", 0, text.index('<dcc:quantity refType="basic_measuredValue">')) + 1
+#: how the page on certificates comes to its own; only what the last one prints is shown
+CERTIFICATE = [
+    ["verify", "--make-plan", "iso-10360-12", "--play", "out/demo/arm.toml", "-o", "out/to-measure"],
+    ["verify", "out/demo/result.json", "out/to-measure/plan.toml", "-o", "out/tested"],
+    [
+        *["certificate", "out/demo/result.json", "examples/platinum/laboratory.toml", "--dcc"],
+        *["--verification", "out/tested/verification.json", "-o", "out/certificate.xml"],
+    ],
+]
+
+
+def certificate_outputs(folder: Path) -> dict[str, str]:
+    """What the command prints, and pieces of its XML, long lists cut short. Raises RuntimeError where one fails."""
+    for arguments in CERTIFICATE:
+        done = ulna(arguments, folder)
+        if done.returncode != 0:
+            raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
+    text = (folder / "out" / "certificate.xml").read_text(encoding="utf-8")
     second = [match.start() for match in re.finditer("<si:columnXMLList>", text)][1]
-    lines = textwrap.dedent(text[begin:second].rstrip()).splitlines()
-    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).*?(?=</)", r"\1…", line) for line in lines) + "\n…\n"
+    size = text.index("<dcc:content>P_Size.Sph")
+    return {
+        "certificate.txt": tidy(done.stdout),
+        "certificate-head.txt": _piece(text, text.index('<dcc:quantity refType="basic_measuredValue">'), second),
+        "certificate-test.txt": _piece(text, text.rindex("<dcc:quantity ", 0, size), text.index("<dcc:data>", size)),
+    }
+
+
+def _piece(text: str, begin: int, end: int) -> str:
+    """Whole lines from begin to end, without their indent."""
+    lines = textwrap.dedent(text[text.rindex("\n", 0, begin) + 1 : end].rstrip()).splitlines()
+    return "\n".join(re.sub(r"^( *<[^>]+>(?:\S+ ){4}).{30,}?(?=</si)", r"\1…", line) for line in lines) + "\n…\n"
 
 
 def command_outputs(pictures: bool = False) -> dict[str, str]:
@@ -100,7 +135,7 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
         if done.returncode != 0:
             raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
         found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
-        found["certificate-head.txt"] = certificate_excerpt((folder / "out" / "certificate.xml").read_text("utf-8"))
+        found |= certificate_outputs(folder)
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)
@@ -165,6 +200,7 @@ def main() -> None:
     for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
+    (OUTPUT / "which-artefact.md").write_text(artefact_table(), encoding="utf-8")
     (OUTPUT / "errors.md").write_text(error_page(), encoding="utf-8")
     for example in examples():
         printed = example_output(example)

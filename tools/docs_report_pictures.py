@@ -21,7 +21,7 @@ ROBOT = "panda_2_clean"
 SHOWN: dict[str, tuple[int, int, str, bool]] = {
     "report-top.png": (1240, 830, "header, #summary, #quality", False),
     "report-joints.png": (1100, 1000, "#joints", False),
-    "report-space.png": (1100, 720, "#space", True),
+    "report-space.png": (1100, 760, "#space", True),
     "report-phone.png": (390, 780, "#summary, #distribution", False),
 }
 COLOURS = 256

@@ -1,5 +1,6 @@
 """The reports that the documentation links to, made while it is built: a hook of MkDocs. They are not committed."""
 
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Any
@@ -7,22 +8,45 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from docs_running import reader_folder, ulna
+from ulna import Arm, Probe
 
-#: the experiment of Cheng, Yu and Fei (2011) on the virtual arm of their Table 4: 101 bars fitted, fresh bars held out
+#: the experiment of Cheng, Yu and Fei (2011) on the virtual arm of their Table 4: 101 bars fitted, fresh bars held out,
+#: and an acceptance test, measured by the true arm and evaluated with the calibrated one
+PLAN = [
+    "verify",
+    "--make-plan",
+    "iso-10360-12",
+    "examples/platinum/platinum.toml",
+    "--play",
+    "truth.toml",
+    "-o",
+    "test",
+]
 STEPS = [
     ["calibrate", "examples/platinum/study.toml", "-o", "out/demo"],
     ["evaluate", "out/demo/result.json", "examples/platinum/check.toml", "-o", "out/check"],
+    PLAN,
+    ["verify", "out/demo/result.json", "test/plan.toml", "-o", "out/test"],
 ]
 REPORT = ["report", "out/demo", "--evaluation", "out/check/evaluation.json"]
+REPORT += ["--verification", "out/test/verification.json", "--lab", "examples/platinum/laboratory.toml"]
 LANGUAGES = ("en", "de")
+
+
+def write_truth(folder: Path) -> None:
+    """`truth.toml`: the arm that the example's readings come from, with the bent probe of Table 4."""
+    nominal = Arm.load(folder / "examples" / "platinum" / "platinum.toml")
+    true = Arm.load(folder / "examples" / "platinum" / "platinum-straight.toml")
+    bent = Probe.from_cylindrical(0.431148, 39.4321, 223.8773, nominal.probes["bent"].ball_mm)
+    dataclasses.replace(true, probes={"bent": bent}).save(folder / "truth.toml")
 
 
 def cheng2011_reports() -> dict[str, bytes]:
     """Name → page, one for each language that the example's laboratory file knows. Raises RuntimeError."""
     with reader_folder() as folder:
-        lab = ["--lab", "examples/platinum/laboratory.toml"]
+        write_truth(folder)
         names = {language: f"cheng2011-{language}.html" for language in LANGUAGES}
-        written = [[*REPORT, *lab, "--language", each, "-o", name] for each, name in names.items()]
+        written = [[*REPORT, "--language", each, "-o", name] for each, name in names.items()]
         for arguments in [*STEPS, *written]:
             done = ulna(arguments, folder)
             if done.returncode != 0:

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
     from ulna.simulate import Simulated, simulate
     from ulna.simulation import Simulation
     from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
-    from ulna.uncertainty.asking import uncertainty
+    from ulna.uncertainty.asking import uncertainty, volume_uncertainty
     from ulna.uncertainty.assess import Assessment
+    from ulna.uncertainty.volume import VolumeMap
     from ulna.verification.verify import Verification, verify
 
 __all__ = [
@@ -60,6 +61,7 @@ __all__ = [
     "Study",
     "UlnaInputError",
     "Verification",
+    "VolumeMap",
     "__version__",
     "batch",
     "calibrate",
@@ -71,6 +73,7 @@ __all__ = [
     "simulate",
     "uncertainty",
     "verify",
+    "volume_uncertainty",
 ]
 
 _WHERE = {
@@ -95,6 +98,7 @@ _WHERE = {
     "Simulation": "simulation",
     "Study": "study",
     "UlnaInputError": "errors",
+    "VolumeMap": "uncertainty.volume",
     "Verification": "verification.verify",
     "batch": "batch",
     "calibrate": "calibrate",
@@ -105,6 +109,7 @@ _WHERE = {
     "plan": "planning.plan",
     "simulate": "simulate",
     "uncertainty": "uncertainty.asking",
+    "volume_uncertainty": "uncertainty.asking",
     "verify": "verification.verify",
 }
 

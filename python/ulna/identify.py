@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -50,7 +51,8 @@ class Identification:
             condition=float(found.condition),
             not_determined=list(found.not_determined),
             lost=[dict(direction) for direction in found.lost],
-            weak=[dict(direction) for direction in found.weak],
+            # without degrees of freedom nobody knows how well: nothing can be called weak
+            weak=[dict(direction) for direction in found.weak if math.isfinite(direction["u"])],
             from_prior=list(found.from_prior),
         )
 

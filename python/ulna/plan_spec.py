@@ -21,7 +21,8 @@ class PlanSpec:
     """An artefact, how many measurements of it to take, and what they are to be good for."""
 
     artefact: Artefact
-    """A bar, a seat or points. One measurement touches all of its features."""
+    """A bar, a seat, points, a sphere or a plane. One measurement touches all of its features, or a half of the sphere,
+    or 200 mm by 200 mm of the plane."""
     encoder_rad: F64
     """(n,) standard deviation of each encoder."""
     seat_mm: float
@@ -29,7 +30,7 @@ class PlanSpec:
     choose: int = 100
     """Measurements to choose."""
     touches: int = 1
-    """Of each feature in a measurement, each in another posture."""
+    """Of each feature in a measurement, each in another posture; of a sphere or plane: in all."""
     placements: int | None = None
     """Most places in which the artefact may stand; None: as many as are worth it."""
     candidates: int = 100_000

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
+from pydantic import Field
+
+from ulna.certificate.source import MOST
 from ulna.certificate.tested import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.errors import UlnaInputError
 from ulna.files.laboratory_tables import ItemTable
+from ulna.files.models import fill
+from ulna.files.result import Open
 from ulna.files.toml import read_bytes, sha256
 from ulna.files.verification import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
 from ulna.result import Result
@@ -18,22 +23,59 @@ from ulna.result import Result
 _SLACK = 1e-9
 
 
+class _ArtefactTemperature(Open):
+    """Of the artefacts, °C and K."""
+
+    value: float
+    u: Annotated[float, Field(ge=0)]
+
+
+class _Environment(Open):
+    """What holds for all tests of a file."""
+
+    temperature: _ArtefactTemperature | None = None
+
+
+class _Source(Open):
+    """A file that figures come from."""
+
+    path: str
+    sha256: str
+
+
+class _Readings(_Source):
+    """A file of touches."""
+
+    state: str
+    points: str
+    """"encoders" or "xyz"."""
+
+
+class _Made(Open):
+    """From what and with what the figures were made."""
+
+    version: str
+    plan: _Source
+    arms: list[_Source]
+    files: list[_Readings]
+
+
 def stated_tests(
     path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
 ) -> list[StatedTests]:
     """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
     file, digest = load_verification(path)
-    _check_arm(file, path, result, result_path, result_sha256, item)
-    return [_state(file, state, path, digest) for state in file.states]
+    made = fill(_Made, file.provenance, path)
+    _check_arm(file, made, path, result, result_path, result_sha256, item)
+    return [_state(file, made, state, path, digest) for state in file.states]
 
 
-def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
-    made = file.provenance
-    stated = file.environment.get("temperature")
-    files = [(path.name, digest)]
-    for entry in (made.get("plan"), made.get("arm_file"), *made.get("files", [])):
-        if isinstance(entry, dict) and entry.get("state", state.state) == state.state:
-            files.append((str(entry.get("path")), str(entry.get("sha256"))))
+def _state(file: VerificationFile, made: _Made, state: StateTable, path: Path, digest: str) -> StatedTests:
+    if not any(test.figures for test in state.tests):
+        raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
+    stated = fill(_Environment, file.environment, path).temperature
+    own = [each for each in made.files if each.state == state.state]
+    files = [(path.name, digest), *((each.path, each.sha256) for each in (made.plan, *made.arms, *own))]
     return StatedTests(
         profile=file.profile.name,
         state=state.state,
@@ -41,17 +83,22 @@ def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -
         statement=file.profile.statement,
         rule=file.decision.rule,
         k=file.decision.k,
-        version=str(made.get("version", "")),
+        version=made.version,
         values=[_figure(path, test.name, figure) for test in state.tests for figure in test.figures],
         departures=[*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)],
-        temperature=None if stated is None else Temperature(float(stated["value"]), float(stated["u"])),
+        temperature=None if stated is None else Temperature(stated.value, stated.u),
         files=files,
     )
 
 
 def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
-    for each in (figure, *figure.individual):
+    verdicts: list[FigureTable | ValueTable] = [figure, *figure.individual]
+    for each in verdicts:
         _check_verdict(path, figure.name, each)
+        if each.u is not None and not 0.0 <= figure.k * each.u <= MOST:
+            _damaged(path, figure.name, f"the uncertainty is {each.u:g} mm with k = {figure.k:g}")
+    if not (1.0 <= figure.k <= MOST and 0.0 < figure.p < 1.0):
+        _damaged(path, figure.name, f"k = {figure.k:g} and p = {figure.p:g} are no coverage factor and probability")
     if (figure.u is None) != (figure.expanded is None) or (
         figure.u is not None
         and figure.expanded is not None
@@ -108,30 +155,42 @@ def _damaged(path: Path, name: str, what: str) -> NoReturn:
 
 
 def _check_arm(
-    file: VerificationFile, path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
+    file: VerificationFile,
+    made: _Made,
+    path: Path,
+    result: Result,
+    result_path: Path,
+    result_sha256: str,
+    item: ItemTable,
 ) -> None:
-    """Tests by encoder readings name the arm file that they were computed with: for as-left readings it must be this
-    result, or the arm.toml beside it; as-found readings may also be computed with an arm that this calibration started
-    from. Tests by coordinates name the arm: its serial number must be in it. Raises UlnaInputError."""
-    used = file.provenance.get("arm_file")
-    if not isinstance(used, dict):
-        if re.search(rf"(?<!\w){re.escape(item.serial)}(?!\w)", file.arm) or file.arm == result.arm.name:
-            return
-        raise UlnaInputError(
-            f"{path}: key 'arm': these tests are of '{file.arm}', the certificate is about serial number "
-            f"'{item.serial}'; expected that number in the name of the arm. Name the right file, or write the serial "
-            "number into the key arm of the verify file and verify again."
-        )
+    """Tests by encoder readings name the arm files that made points of them: as left it must be this result, or the
+    arm.toml beside it; as found it may also be one that this calibration started from. Tests by coordinates name the
+    arm: its serial number must be in it. Raises UlnaInputError."""
+    if not made.arms or any(each.points == "xyz" for each in made.files):
+        _check_name(file, path, result, item)
+    if not made.arms:
+        return
     calibrated = {result_sha256}
     beside = result_path.parent / "arm.toml"
     if beside.is_file():
         calibrated.add(sha256(read_bytes(beside, "an arm file")))
     before = {str(entry["sha256"]) for entry in result.provenance["files"]}
-    for state in file.states:
-        known = calibrated if state.state == "as-left" else calibrated | before
-        if used.get("sha256") not in known:
-            raise UlnaInputError(
-                f"{path}: key 'provenance.arm_file': the {state.state} values were computed with {used.get('path')}, "
-                f"which is another arm than that of {result_path}; expected tests of this calibration. Verify again "
-                f"with: ulna verify {result_path} PLAN"
-            )
+    states = {state.state for state in file.states}
+    allowed = calibrated if states == {"as-left"} else calibrated | before
+    strange = [each for each in made.arms if each.sha256 not in allowed]
+    if strange or ("as-left" in states and not any(each.sha256 in calibrated for each in made.arms)):
+        raise UlnaInputError(
+            f"{path}: key 'provenance.arms': values were computed with {(strange or made.arms)[0].path}, another arm "
+            f"than that of {result_path}; expected tests of this calibration, as found also of the arm that it started "
+            f"from. Verify again with: ulna verify {result_path} PLAN"
+        )
+
+
+def _check_name(file: VerificationFile, path: Path, result: Result, item: ItemTable) -> None:
+    if re.search(rf"(?<!\w){re.escape(item.serial)}(?!\w)", file.arm) or file.arm == result.arm.name:
+        return
+    raise UlnaInputError(
+        f"{path}: key 'arm': these tests are of '{file.arm}', the certificate is about serial number '{item.serial}'; "
+        "expected that number in the name of the arm. Name the right file, or write the serial number into the key arm "
+        "of the verify file and verify again."
+    )

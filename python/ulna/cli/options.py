@@ -19,6 +19,10 @@ Dask = Annotated[
     str | None,
     typer.Option("--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster whose workers do it."),
 ]
+Keep = Annotated[
+    Path | None,
+    typer.Option("--keep", metavar="DIR", help="Keep finished work there; the same command goes on from it."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]
 

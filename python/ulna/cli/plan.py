@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import ArmFile, Force, Json, OutFolder
+from ulna.cli.options import ArmFile, Dask, Force, Json, Keep, OutFolder
 from ulna.cli.running import guard
 
 
@@ -15,6 +15,8 @@ from ulna.cli.running import guard
 def plan(
     arm: ArmFile,
     spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The plan file (TOML).", show_default=False)],
+    dask: Dask = None,
+    keep: Keep = None,
     out: OutFolder = None,
     force: Force = False,
     as_json: Json = False,
@@ -33,6 +35,7 @@ def plan(
     from ulna.files.plan import load_plan_spec
     from ulna.planning.written import FILES
     from ulna.report.plan import plan_report
+    from ulna.work.pieces import workers_at
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
@@ -40,8 +43,8 @@ def plan(
     asked = load_plan_spec(spec, nominal)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *asked.files])
-    with output.progress_bar() as progress:
-        found = ulna.plan(nominal, asked, progress)
+    with workers_at(dask) as workers, output.progress_bar() as progress:
+        found = ulna.plan(nominal, asked, progress, workers=workers, keep=keep)
     if out is not None:
         found.save(out, force)
     if as_json:

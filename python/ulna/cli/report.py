@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import Force, one_of
+from ulna.cli.options import Force, Json, one_of
 from ulna.cli.running import guard
 
 
@@ -43,6 +43,10 @@ def report(
     evaluation: Annotated[
         Path | None, typer.Option("--evaluation", metavar="FILE", help="An evaluation.json: readings held out.")
     ] = None,
+    verification: Annotated[
+        Path | None,
+        typer.Option("--verification", metavar="FILE", help="A verification.json: the acceptance test, MPE."),
+    ] = None,
     laboratory: Annotated[
         Path | None,
         typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
@@ -57,12 +61,15 @@ def report(
         ),
     ] = None,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Write the report of a calibration: what a metrologist wants to see before trusting it.
 
     Figures before and after, on fitted and held-out readings; distribution of the residuals; residuals over each joint
     angle, reach and temperature, reading by reading and in space; parameters with their uncertainties and correlations;
     observability; artefacts, environment, outliers, provenance. What the data do not give is said in words.
+
+    With --json it prints which files were written and what is missing.
 
     Example: [bold]ulna report out/result.json --html -o report.html[/bold]
     """
@@ -74,10 +81,18 @@ def report(
     one_of("--language", language, LANGUAGES)
     formats = [name for name, asked in (("html", as_html), ("pdf", as_pdf)) if asked]
     wanted = targets(out, formats or ["html"], force)
-    content = gather(result, study, cross_validation, evaluation, laboratory)
+    with output.progress_bar() as progress:
+        content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
     files = [result / "result.json" if result.is_dir() else result]
-    files += [path for path in (study, cross_validation, evaluation, laboratory) if path is not None]
+    files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
     write_report(content, wanted, language, files, force, fonts)
+    if as_json:
+        output.print_json(
+            {
+                "files": {each: str(path) for each, path in wanted.items()},
+                "missing": {section: said.key for section, said in content.missing.items()},
+            }
+        )
     for said in content.missing.values():
         if said.key == "study.changed":
             output.say(f"The study has changed since the calibration ({said.values['files']}): not used.")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ulna.cli.options import Dask, Force, Json, OutFolder
+from ulna.cli.options import Dask, Force, Json, Keep, OutFolder
 from ulna.cli.running import guard
+
+if TYPE_CHECKING:
+    import ulna
 
 FILE = "uncertainty.json"
 
@@ -16,7 +19,12 @@ FILE = "uncertainty.json"
 @guard
 def uncertainty(
     result: Annotated[
-        Path, typer.Argument(metavar="RESULT", help="The result.json of a calibration.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="RESULT",
+            help="The result.json of a calibration; an arm.toml with --performance.",
+            show_default=False,
+        ),
     ],
     task: Annotated[
         Path, typer.Argument(metavar="TASK", help="What is measured, and in which poses (TOML).", show_default=False)
@@ -25,41 +33,110 @@ def uncertainty(
         Path | None,
         typer.Option("--study", metavar="STUDY", help="Of that calibration: repeat it whole on new noise, many times."),
     ] = None,
+    performance: Annotated[
+        Path | None,
+        typer.Option("--performance", metavar="FILE", help="What a certificate says, where no calibration is at hand."),
+    ] = None,
     trials: Annotated[
         int, typer.Option("--trials", metavar="N", help="At the most, of Monte Carlo; 0: none.")
     ] = 1_000_000,
     seed: Annotated[int, typer.Option("--seed", metavar="N", help="Of the random numbers.")] = 0,
     dask: Dask = None,
+    keep: Keep = None,
     out: OutFolder = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Say how sure a measured point, length, ball or distance is, why, and what is not in the figure.
+    """Say how sure a measured point, length, ball, plane or form is, why, and what is not in the figure.
 
     First order after the GUM, and a Monte Carlo calculation after JCGM 101 that goes on until its figures are steady,
-    and says whether the first order is good enough. With -o it writes uncertainty.json. Exit code 1 where a value is
-    not determined.
+    and says whether the first order is good enough. With -o it writes uncertainty.json. Where TASK is a volume file
+    (ulna-volume/1), a map of points and lengths all over the volume instead: tables, and with -o a picture. Exit code 1
+    where a value is not determined.
+
+    With --performance the arm's calibration need not be at hand: arms are drawn, and kept where their simulated
+    performance test agrees with the certificate.
 
     Example: [bold]ulna uncertainty out/result.json length.toml[/bold]
     """
+    import ulna
+    from ulna.cli import output
+    from ulna.errors import UlnaInputError
+    from ulna.files.output import check_output, refuse_inputs
+    from ulna.files.volume import is_volume
+    from ulna.uncertainty.pictures import FILES as MAP_FILES
+
+    if trials < 0 or seed < 0:
+        raise UlnaInputError("options --trials and --seed: expected numbers of 0 or more. Correct them.")
+    everywhere = is_volume(task)
+    names = MAP_FILES if everywhere else [FILE]
+    if out is not None:
+        check_output(out, names, force)
+        refuse_inputs([out / name for name in names], [result, task, *([] if performance is None else [performance])])
+    if not everywhere:
+        repeated = None if study is None else ulna.Study.load(study)
+        _measured(result, task, repeated, performance, trials, seed, dask, keep, out, force, as_json)
+        return
+    if study is not None or keep is not None:
+        raise UlnaInputError(
+            f"{task}: a map over the volume is of the first order and quick; expected it without --study and --keep. "
+            "Leave them out."
+        )
+    from ulna.report.volume import volume_report
+    from ulna.uncertainty.pictures import save_volume
+    from ulna.uncertainty.zones import as_dict
+    from ulna.work.pieces import workers_at
+
+    with workers_at(dask) as workers, output.progress_bar() as progress:
+        found = ulna.volume_uncertainty(
+            result, task, performance=performance, seed=seed, workers=workers, progress=progress
+        )
+    if out is not None:
+        save_volume(found, out, force)
+    if as_json:
+        output.print_json(as_dict(found))
+    else:
+        output.print_renderable(*volume_report(found))
+    if out is not None:
+        output.say(f"Written to {out}: {', '.join(MAP_FILES)}")
+    if not found.whole:
+        output.say("Not everything is determined: see the list above.")
+        raise typer.Exit(1)
+
+
+def _measured(
+    result: Path,
+    task: Path,
+    repeated: ulna.Study | None,
+    performance: Path | None,
+    trials: int,
+    seed: int,
+    dask: str | None,
+    keep: Path | None,
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """One measurement."""
     import json
 
     import ulna
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import check_output, output_folder, refuse_inputs
+    from ulna.files.output import output_folder
     from ulna.report.uncertainty import uncertainty_report
     from ulna.work.pieces import workers_at
 
-    if trials < 0 or seed < 0:
-        raise UlnaInputError("options --trials and --seed: expected numbers of 0 or more. Correct them.")
-    if out is not None:
-        check_output(out, (FILE,), force)
-        refuse_inputs([out / FILE], [result, task])
-    repeated = None if study is None else ulna.Study.load(study)
     with workers_at(dask) as workers, output.progress_bar() as progress:
         found = ulna.uncertainty(
-            result, task, study=repeated, seed=seed, most_trials=trials, workers=workers, progress=progress
+            result,
+            task,
+            study=repeated,
+            performance=performance,
+            seed=seed,
+            most_trials=trials,
+            workers=workers,
+            keep=keep,
+            progress=progress,
         )
     if out is not None:
         with output_folder(out, (FILE,), force) as staging:

@@ -20,6 +20,7 @@ from ulna.result import FitSummary
 if TYPE_CHECKING:
     from ulna.extras import JudgedExtra
     from ulna.files.laboratory import Laboratory
+    from ulna.files.verification import VerificationFile
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -161,8 +162,10 @@ class ParameterRow:
     """(estimate - nominal) / u."""
     status: str
     """"fitted", "held" or "not-determined"."""
+    cause: str | None
+    """Why it is not determined, by its key: "base-frame", "probe-on-axis", …; None where it is, or nobody knows."""
     reason: str | None
-    """Why it is not determined, in the words of the identification (English)."""
+    """The same in the words of the identification (English)."""
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,43 @@ class Lengths:
     """(N,) calibrated."""
     error_mm: F64
     """(N,) measured minus calibrated."""
+
+
+@dataclass(frozen=True)
+class TestedLengths:
+    """Length errors of an acceptance test over their lengths."""
+
+    __test__ = False  # no test of pytest's
+
+    state: str
+    """"as-found" or "as-left"."""
+    test: str
+    figure: str
+    length_mm: F64
+    """(N,) calibrated."""
+    error_mm: F64
+    limit_mm: F64
+    """(N,) MPE; NaN where none is stated."""
+    guard_mm: F64
+    """(N,) NaN where it is not known."""
+    verdict: list[str | None]
+    """"pass", "fail", "undecided" or None."""
+    a_mm: float | None
+    """MPE = a + L / b; None where none is stated."""
+    b: float | None
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What `ulna verify` found."""
+
+    name: str
+    """Of the file."""
+    sha256: str
+    file: VerificationFile
+    remarks: list[Said]
+    """Where it is not of this result's arm."""
+    lengths: list[TestedLengths]
 
 
 @dataclass(frozen=True)
@@ -292,8 +332,8 @@ class Content:
     outliers: list[dict[str, Any]]
     """As in a result: all of them, the farthest first."""
     extras: list[JudgedExtra]
-    verification: Any
-    """What `ulna verify` found, or None."""
+    verification: Verification | None
+    """The acceptance test, where one was given."""
     laboratory: Laboratory | None
     """What the laboratory file says, where one was given."""
     missing: dict[str, Said]

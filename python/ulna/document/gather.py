@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from ulna.document.content import (
     Content,
     Environment,
     Lengths,
+    Parameters,
     Provenance,
     QualityRow,
     Quiver,
@@ -26,11 +27,17 @@ from ulna.document.distribution import samples
 from ulna.document.known import observability, parameters
 from ulna.document.quality import held_out, quality_rows, residual_row
 from ulna.document.source import find_study
+from ulna.document.tested import verification
 from ulna.evaluate import study_of_arm
 from ulna.files.laboratory import load_laboratory
 from ulna.files.toml import read_bytes, sha256
 from ulna.result import Result
 from ulna.study import Artefact, Study
+
+Progress = Callable[[str, int, int], None]
+
+_STEPS = 4
+"""The result; the study; what it says; what is made of it."""
 
 
 def gather(
@@ -39,17 +46,30 @@ def gather(
     cross_validation: Path | None = None,
     evaluation: Path | None = None,
     laboratory: Path | None = None,
+    verified: Path | None = None,
+    progress: Progress | None = None,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
     result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
     longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
-    calibrated for whom, with what.
+    calibrated for whom, with what. verified: what `ulna verify` wrote.
+    progress is called with (stage, done, total).
     """
+
+    def at(done: int) -> None:
+        if progress is not None:
+            progress("gathering", done, _STEPS)
+
+    at(0)
     named = None if laboratory is None else load_laboratory(laboratory)
     path = result / "result.json" if result.is_dir() else result
     found = Result.load(path)
+    at(1)
+    digest = sha256(read_bytes(path, "a result.json"))
+    test = None if verified is None else verification(verified, found, path, digest)
     source, files, no_study = find_study(found, path, study)
+    at(2)
     rows, said = held_out(found, source, cross_validation, evaluation)
     missing = {} if no_study is None else {"study": no_study}
     over: list[Cloud] = []
@@ -59,9 +79,13 @@ def gather(
         fitted = study_of_arm(source, found.arm)
         over, quiver = clouds(fitted, found.arm, found.residuals)
         lengths = _lengths(source, found)
+    if test is None:
+        missing["verification"] = Said("missing.verification")
     if named is None:
         missing["laboratory"] = Said("missing.laboratory")
-    missing |= _missing(found, source, over, quiver, lengths, rows)
+    at(3)
+    known = parameters(found)
+    missing |= _missing(found, known, source, over, quiver, lengths, rows)
     made = found.provenance
     return Content(
         arm=found.arm.name,
@@ -74,7 +98,7 @@ def gather(
         samples=samples(found.residuals, found.artefacts),
         clouds=over,
         quiver=quiver,
-        parameters=parameters(found),
+        parameters=known,
         identification=found.identifiability,
         observability=observability(found),
         lengths=lengths,
@@ -83,7 +107,7 @@ def gather(
         environment=_environment(made, source),
         outliers=found.outliers,
         extras=found.extras,
-        verification=None,
+        verification=test,
         laboratory=named,
         missing=missing,
         provenance=Provenance(
@@ -93,7 +117,7 @@ def gather(
             seed=int(made.get("seed", 0)),
             study=made.get("study"),
             result=path.name,
-            result_sha256=sha256(read_bytes(path, "a result.json")),
+            result_sha256=digest,
             files=files,
             options=dict(made.get("options", {})),
             warnings=[str(text) for text in made.get("warnings", [])],
@@ -103,6 +127,7 @@ def gather(
 
 def _missing(
     result: Result,
+    known: Parameters,
     study: Study | None,
     over: Sequence[Cloud],
     quiver: Quiver | None,
@@ -123,11 +148,10 @@ def _missing(
             missing["lengths"] = Said("missing.lengths")
         if quiver is None:
             missing["quiver"] = Said("missing.quiver")
-    if not result.covariance.names:
+    if not known.correlation_names:
         missing["correlation"] = Said("missing.correlation")
     if observability(result) is None:
         missing["observability"] = Said("missing.observability")
-    missing["verification"] = Said("missing.verification")
     return missing
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,13 +29,14 @@ def parameters(result: Result) -> Parameters:
     stated = bool(result.provenance.get("noise"))
     freedom = math.inf if stated else float(result.fit.degrees_of_freedom)
     k = coverage_factor(COVERAGE, freedom) if freedom > 0.0 else math.nan
-    because: dict[str, str] = {}
+    lost: dict[str, dict[str, Any]] = {}
     for direction in result.identifiability.lost:
         for name in direction["combination"]:
-            because.setdefault(name, str(direction["because"]))
+            lost.setdefault(name, direction)
     rows = []
     for row in result.parameters:
         u = row.u
+        why = lost.get(row.name, {}) if row.status == "not-determined" else {}
         rows.append(
             ParameterRow(
                 name=row.name,
@@ -45,7 +47,8 @@ def parameters(result: Result) -> Parameters:
                 expanded=None if u is None or math.isnan(k) else k * u,
                 ratio=(row.value - row.start) / u if u else None,
                 status=row.status,
-                reason=because.get(row.name) if row.status == "not-determined" else None,
+                cause=why.get("cause"),
+                reason=why.get("because"),
             )
         )
     known = {row.name for row in rows if row.u is not None}

@@ -7,7 +7,7 @@ import typing
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Tag, ValidationError
 from pydantic_core import ErrorDetails
 
 from ulna.errors import UlnaInputError, nearest
@@ -110,7 +110,9 @@ def _at(model: type[BaseModel], location: tuple[int | str, ...]) -> list[type[Ba
     """The models that may stand at a path of keys."""
     found: list[Any] = [model]
     for step in location:
-        if not (isinstance(step, str) and step.startswith("<")):
+        if isinstance(step, str) and step.startswith("<"):
+            found = [inner for each in found for inner in _tagged(each, step)]
+        else:
             found = [inner for each in found for inner in _step(each, step)]
     return [each for each in _plain(found) if isinstance(each, type) and issubclass(each, BaseModel)]
 
@@ -124,6 +126,16 @@ def _step(annotation: Any, step: int | str) -> list[Any]:
         elif typing.get_origin(each) in (list, dict):
             inner.append(typing.get_args(each)[-1])
     return inner
+
+
+def _tagged(annotation: Any, tag: str) -> list[Any]:
+    """The members of a union that bear a tag."""
+    if typing.get_origin(annotation) is typing.Annotated:
+        inner, *notes = typing.get_args(annotation)
+        return [inner] if Tag(tag) in notes else _tagged(inner, tag)
+    if typing.get_origin(annotation) in (list, dict):
+        return []
+    return [inner for each in typing.get_args(annotation) for inner in _tagged(each, tag)]
 
 
 def _plain(annotations: list[Any]) -> list[Any]:

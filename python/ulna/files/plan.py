@@ -18,6 +18,7 @@ from ulna.files.toml import check_format, read_toml
 from ulna.files.units import Units
 from ulna.model import Arm
 from ulna.plan_spec import Criterion, PlanSpec
+from ulna.study import SURFACES
 
 WHAT = 'a plan file (TOML, format = "ulna-plan/1")'
 
@@ -39,11 +40,12 @@ class PlanTable(Strict):
 
     choose: Count = 100
     """Measurements; each touches every feature of the artefact."""
-    touches: Annotated[int, Field(ge=1, le=20)] = 1
-    """Of each feature in a measurement."""
+    touches: Annotated[int, Field(ge=1, le=100)] | None = None
+    """Of each feature in a measurement (1); of a sphere or plane: in all (20)."""
     placements: Count | None = None
     """Most places in which the artefact may stand."""
-    candidates: Count = 100_000
+    candidates: Count | None = None
+    """100 000; of a sphere or plane 10 000."""
     criterion: Criterion = "length"
     hold: list[str] = Field(default_factory=list)
     """Parameters that will not be fitted: shell-style patterns."""
@@ -63,7 +65,7 @@ class PlanFile(Strict):
     format: Literal["ulna-plan/1"]
     units: Units
     artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1, max_length=1)]
-    """One: a bar, a seat or points."""
+    """One: a bar, a seat, points, a sphere or a plane."""
     noise: PlanNoise
     plan: PlanTable = PlanTable()
     travel: TravelTable | None = None
@@ -87,6 +89,7 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
         raise UlnaInputError(
             f"{path}: key 'artefact.{name}.features' is missing; a plan needs to know what is touched. Add it."
         )
+    surface = artefact.kind in SURFACES
     study = None if table.taken is None else load_study(path.parent / table.taken)
     files = [path, *([] if features_file is None else [features_file.path])]
     files += [] if study is None else [file.path for file in study.files]
@@ -95,9 +98,9 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
         encoder_rad=np.asarray(encoder_of(file.noise.encoder, arm, path)) * units.rad,
         seat_mm=file.noise.seat * units.mm,
         choose=table.choose,
-        touches=table.touches,
+        touches=table.touches or (20 if surface else 1),
         placements=table.placements,
-        candidates=table.candidates,
+        candidates=table.candidates or (10_000 if surface else 100_000),
         criterion=table.criterion,
         hold=list(table.hold),
         probe=table.probe,

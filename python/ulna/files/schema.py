@@ -14,6 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from ulna.files.arm import ArmFile
 from ulna.files.laboratory_tables import LaboratoryFile
+from ulna.files.performance import PerformanceFile
 from ulna.files.plan import PlanFile
 from ulna.files.profile_tables import ProfileFile
 from ulna.files.result import CrossValidationFile, EvaluationFile, ResultFile
@@ -22,6 +23,7 @@ from ulna.files.study import StudyFile
 from ulna.files.task import TaskFile
 from ulna.files.verification import VerificationFile
 from ulna.files.verify_tables import VerifyFile
+from ulna.files.volume import VolumeFile
 
 MODELS: dict[str, type[BaseModel]] = {
     "ulna-arm-1": ArmFile,
@@ -29,6 +31,8 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-simulation-1": SimulationFile,
     "ulna-plan-1": PlanFile,
     "ulna-task-1": TaskFile,
+    "ulna-volume-1": VolumeFile,
+    "ulna-performance-1": PerformanceFile,
     "ulna-lab-1": LaboratoryFile,
     "ulna-profile-1": ProfileFile,
     "ulna-verify-1": VerifyFile,

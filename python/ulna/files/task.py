@@ -55,9 +55,10 @@ class TaskFile(Strict):
     """A measurement."""
 
     format: str
-    kind: Literal["point", "length", "ball", "distance"]
+    kind: Literal["point", "length", "ball", "sphericity", "plane", "flatness", "distance"]
     """point: coordinates of what is touched; length: between A and B; ball: centre and diameter of what is touched on
-    its surface; distance: of point from plane."""
+    its surface; plane: normal and distance from the origin; sphericity, flatness: how far the surface is from them;
+    distance: of point from plane."""
     units: Units
     readings: TaskReadings
     noise: NoiseTable | None = None
@@ -85,6 +86,15 @@ class StatedTask:
     noise: Noise | None
 
 
+def check_temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> None:
+    """Raises UlnaInputError where the arm grows with its temperature and none is stated."""
+    if "link-expansion" in arm.extras and table is None:
+        raise UlnaInputError(
+            f"{path}: [temperature] is missing, but the links of arm '{arm.name}' grow with it; expected value (°C) "
+            "and u (K). Add it."
+        )
+
+
 def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: list[str]) -> StatedTask:
     """A task file and its readings; features: of each kind. Raises UlnaInputError."""
     document, _ = read_toml(path, WHAT)
@@ -94,11 +104,7 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
         raise UlnaInputError(
             f"{path}: key 'inside': a {file.kind} has no inside; expected it with kind = \"ball\". Remove it."
         )
-    if "link-expansion" in arm.extras and file.temperature is None:
-        raise UlnaInputError(
-            f"{path}: [temperature] is missing, but the links of arm '{arm.name}' grow with it; expected value (°C) "
-            "and u (K). Add it."
-        )
+    check_temperature(file.temperature, arm, path)
     source_file = path.parent / file.readings.file
     entry = ReadingsEntry(
         file=file.readings.file,

@@ -123,7 +123,7 @@ def read_touches(
     known = [*LABELS, *LISTED, *XYZ] if not encoders else [*LABELS, *LISTED, *known_columns(joints, False)]
     remark_strange(header, known, [*LABELS, *([] if encoders else XYZ)], remarks)
     if not encoders:
-        return _coordinates(header, entry, setting)
+        return _coordinates(header, entry, setting, remarks)
     assert arm is not None
     assert arm_file is not None
     check_columns(header, arm.n, arm.name, [], asked=header.columns)
@@ -142,11 +142,12 @@ def read_touches(
     probe = each_row(codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row), len(row))
     warmth_k = arm.warmth_k(_temperature(frame, arm, setting), len(row))
     balls = np.array([np.nan if each.ball_mm is None else each.ball_mm for each in arm.probes.values()])
+    _remark_repeats(q_rad, header, remarks)
     p_mm = arm.core.tip(q_rad, probe, warmth_k)
     return Touches(path, file_sha256(path), "encoders", _labels(frame, entry, len(row)), p_mm, balls[probe], row)
 
 
-def _coordinates(header: Header, entry: VerifyReadings, setting: Setting) -> Touches:
+def _coordinates(header: Header, entry: VerifyReadings, setting: Setting, remarks: list[str]) -> Touches:
     missing = [axis for axis in XYZ if axis not in header.columns]
     if missing:
         raise UlnaInputError(
@@ -154,7 +155,7 @@ def _coordinates(header: Header, entry: VerifyReadings, setting: Setting) -> Tou
             "expected x, y, z, or the encoder columns q1, q2, …. Map the file's columns with the key 'columns', or "
             "correct the header."
         )
-    for key in ("angle", "probe"):
+    for key in ("angle", "probe", "arm"):
         if getattr(entry, key) is not None:
             raise UlnaInputError(
                 f"{setting.path}: key 'readings.{key}': {header.path} holds coordinates; expected it with encoder "
@@ -164,7 +165,21 @@ def _coordinates(header: Header, entry: VerifyReadings, setting: Setting) -> Tou
     p_mm = np.ascontiguousarray(frame.select(XYZ).to_numpy(), dtype=np.float64) * setting.units.mm
     ball_mm = np.full(len(frame), np.nan if setting.ball_mm is None else setting.ball_mm)
     labels = _labels(frame, entry, len(frame))
+    _remark_repeats(p_mm, header, remarks)
     return Touches(header.path, file_sha256(header.path), "xyz", labels, p_mm, ball_mm, np.arange(1, len(frame) + 1))
+
+
+def _remark_repeats(values: F64, header: Header, remarks: list[str]) -> None:
+    """No two touches are the same to the last digit: a row that is there twice was copied."""
+    _, first, count = np.unique(values, axis=0, return_index=True, return_counts=True)
+    if (count > 1).any():
+        row = int(first[count > 1].min())
+        same = np.flatnonzero((values == values[row]).all(axis=1)) + 1
+        extra = int((count - 1).sum())
+        remarks.append(
+            f"{header.path}: {extra} row{'s repeat' if extra > 1 else ' repeats'} another one to the last digit, first "
+            f"rows {', '.join(map(str, same[:4].tolist()))}: all are used."
+        )
 
 
 def _filled(header: Header, columns: Sequence[str]) -> pl.DataFrame:

@@ -26,6 +26,12 @@ class StatedArm:
     path: Path
     sha256: str
 
+    @classmethod
+    def load(cls, path: Path) -> StatedArm:
+        """From an arm file or a result. Raises UlnaInputError."""
+        arm, sha256 = load_arm_and_hash(path)
+        return cls(arm, path, sha256)
+
 
 @dataclass(frozen=True)
 class VerifyPlan:
@@ -35,7 +41,8 @@ class VerifyPlan:
     sha256: str
     file: VerifyFile
     profile: Profile
-    arm: StatedArm | None
+    arms: list[StatedArm]
+    """Those that turned encoder readings into points; that of the command first."""
     touches: dict[str, list[Touches]]
     """State → files."""
     warnings: list[str]
@@ -48,24 +55,27 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
     _check_kinds(document, path)
     file = fill(VerifyFile, document, path)
     profile = load_profile(file.profile, path.parent, f"{path}: key 'profile'")
-    arm = None
+    arms: dict[Path, StatedArm] = {}
     if arm_path is not None:
-        loaded, digest = load_arm_and_hash(arm_path)
-        arm = StatedArm(loaded, arm_path, digest)
+        arms[arm_path] = StatedArm.load(arm_path)
     remarks: list[str] = []
     temperature_c = None if file.temperature is None else file.temperature.value
-    ball_mm = None if file.ball is None else file.ball * file.units.mm
-    setting = Setting(path, file.units, ball_mm, temperature_c)
+    setting = Setting(path, file.units, None if file.ball is None else file.ball * file.units.mm, temperature_c)
     found: dict[str, list[Touches]] = {}
+    used = set()
     for number, entry in enumerate(file.readings, start=1):
+        own = arm_path if entry.arm is None else path.parent / entry.arm
+        if own is not None and own not in arms:
+            arms[own] = StatedArm.load(own)
+        stated = None if own is None else arms[own]
         touches = read_touches(
-            entry, number, setting, None if arm is None else arm.arm, None if arm is None else arm.path, remarks
+            entry, number, setting, None if stated is None else stated.arm, None if stated is None else own, remarks
         )
+        used |= {own} if touches.source == "encoders" else set()
         _check_labels(touches, file, profile, path)
         found.setdefault(entry.state, []).append(touches)
-    if arm is not None and all(each.source == "xyz" for parts in found.values() for each in parts):
-        remarks.append(f"{arm_path}: the arm is not used: all readings are coordinates.")
-    return VerifyPlan(path, sha256, file, profile, arm, found, remarks)
+    remarks += [f"{each}: the arm is not used: its readings are coordinates." for each in arms if each not in used]
+    return VerifyPlan(path, sha256, file, profile, list(arms.values()), found, remarks)
 
 
 def _check_kinds(document: dict[str, Any], path: Path) -> None:

@@ -86,6 +86,9 @@ class VerifyReadings(TableKeys):
     """Path, relative to the verify file."""
     state: State = "as-left"
     """Before or after calibration and repair."""
+    arm: str | None = None
+    """Of encoder readings: path of the arm file or result that turns these into points, in place of the command's ARM:
+    the arm as found, say."""
     angle: Literal["rad", "deg", "counts"] | None = None
     """Unit of encoder angles; the file's angle unit where it is not given."""
     probe: str | None = None

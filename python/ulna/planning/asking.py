@@ -7,16 +7,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.assembly import check_balls
 from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.parameters import hold_mask
 from ulna.plan_spec import PlanSpec
 from ulna.planning.candidates import EACH
-from ulna.study import FitOptions, Study
+from ulna.study import SURFACES, FitOptions, Study
 
-F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
+LEAST_TOUCHES = 4
+"""Of a surface: three only say where it is."""
+MOST_TOUCHES = 1_000_000
+"""Of surfaces, of all candidates together: a row each."""
 LEAST_CANDIDATES = 1000
 """Fewer stand in fewer than ten places, which do not show everything that the arm can be asked."""
 
@@ -31,28 +35,33 @@ def free_parameters(arm: Arm, spec: PlanSpec) -> I64:
     return free
 
 
-def travel(arm: Arm, spec: PlanSpec) -> F64:
-    """(n, 2) how far the joints turn: as the spec says, else the arm's limits. Raises UlnaInputError without either."""
-    if spec.travel_rad is not None:
-        return np.array(spec.travel_rad, dtype=np.float64)
-    for k, joint in enumerate(arm.joints, start=1):
-        if joint.limits_rad is None:
-            raise UlnaInputError(
-                f"{spec.label}: joint {k} of arm '{arm.name}' has no limits; expected how far each joint turns, for a "
-                "posture that the arm cannot take is no plan. Add limits to the arm file, or travel to the plan."
-            )
-    return np.array([joint.limits_rad for joint in arm.joints], dtype=np.float64)
-
-
 def check(arm: Arm, spec: PlanSpec) -> None:
     """Raises UlnaInputError for what no plan can be made of."""
     kind = spec.artefact.kind
-    if kind not in ("bar", "seat", "points"):
+    if kind == "length":
         raise UlnaInputError(
-            f"{spec.label}: artefact '{spec.artefact.name}' is a {kind}; plans are made for bar, seat and points. "
-            "State one of them."
+            f"{spec.label}: artefact '{spec.artefact.name}' is a length; plans are made for bar, seat, points, sphere "
+            "and plane. State the bar whose length it is."
         )
-    if len(spec.artefact.features) * spec.touches < 2 and spec.artefact.frame == "free":
+    if spec.artefact.fitted:
+        raise UlnaInputError(
+            f"{spec.label}: artefact '{spec.artefact.name}' has fit = true; expected it as its certificate has it, "
+            "which a plan takes as known. Remove fit."
+        )
+    if kind in SURFACES:
+        probe = arm.probe_index(spec.probe)
+        check_balls(spec.artefact, arm, [probe], spec.label)
+        if spec.touches < LEAST_TOUCHES:
+            raise UlnaInputError(
+                f"{spec.label}: {spec.touches} touches of a {kind} tell nothing, for its place is unknown; expected "
+                f"{LEAST_TOUCHES} or more. Raise touches."
+            )
+        if spec.candidates * spec.touches > MOST_TOUCHES:
+            raise UlnaInputError(
+                f"{spec.label}: {spec.candidates} candidates of {spec.touches} touches each; expected at most "
+                f"{MOST_TOUCHES} touches in all. Lower candidates or touches."
+            )
+    elif len(spec.artefact.features) * spec.touches < 2 and spec.artefact.frame == "free":
         raise UlnaInputError(
             f"{spec.label}: one touch of one feature tells nothing, for its place is unknown; expected touches of 2 or "
             "more. Raise touches."

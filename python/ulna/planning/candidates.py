@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.plan_spec import Box, PlanSpec
-from ulna.virtual.arm import turns
+from ulna.plan_spec import PlanSpec
+from ulna.planning.touchable import touchable
+from ulna.virtual.places import places
 from ulna.virtual.postures import Mover
 
 F64 = NDArray[np.float64]
@@ -17,10 +17,10 @@ I64 = NDArray[np.int64]
 
 POSTURES = 10
 """At each feature in a place, for each touch that a measurement takes of it."""
+ON_SURFACE = 4
+"""At each place on a surface: there are many of them."""
 EACH = 100
 """Measurements combined of these in one place, where the number of places is free: the square of POSTURES."""
-BARREN = 20
-"""Rounds of drawing that find no place before it is said that there is none."""
 
 
 @dataclass(frozen=True)
@@ -49,79 +49,42 @@ class Candidates:
         return Candidates(self.features_mm, self.q_rad, self.place[which], self.picked[which])
 
 
-def draw(spec: PlanSpec, mover: Mover, probe: int, rng: np.random.Generator, places: int | None = None) -> Candidates:
-    """`spec.candidates` measurements, or nearly. places: in so many places. Raises UlnaInputError."""
-    features_mm = np.array(list(spec.artefact.features.values()), dtype=np.float64)
-    if spec.artefact.frame == "arm":
-        places = 1
-    pairs = len(features_mm) == 2 and spec.touches == 1
-    count = max(1, -(-spec.candidates // EACH)) if places is None else places
-    each = -(-spec.candidates // count)
-    postures = max(2, int(np.ceil(np.sqrt(each)))) if pairs else POSTURES * spec.touches
-    at_mm, q_rad = stand(spec, mover, probe, features_mm, count, postures, spec.room_mm, rng)
-    return combine(at_mm, q_rad, each, spec.touches, rng)
+def places_of(spec: PlanSpec) -> int:
+    """In how many places candidates stand."""
+    return 1 if spec.artefact.frame == "arm" else max(1, -(-spec.candidates // EACH))
+
+
+def draw(spec: PlanSpec, mover: Mover, probe: int, rng: np.random.Generator, count: int | None = None) -> Candidates:
+    """`spec.candidates` measurements, or nearly; count: only those of so many places. Raises UlnaInputError."""
+    what = touchable(spec, mover.arm, probe)
+    each = -(-spec.candidates // places_of(spec))
+    if what.pairs:
+        postures = max(2, int(np.ceil(np.sqrt(each))))
+    else:
+        postures = POSTURES * what.touches if what.outward is None else ON_SURFACE
+    at_mm, q_rad = places(what.standing(spec), mover, probe, places_of(spec) if count is None else count, postures, rng)
+    return combine(at_mm, q_rad, each, what.touches, rng)
+
+
+def joined(parts: list[Candidates]) -> Candidates:
+    """All of them, in order."""
+    firsts = np.cumsum([0, *(len(part.features_mm) for part in parts)])
+    return Candidates(
+        np.concatenate([part.features_mm for part in parts]),
+        np.concatenate([part.q_rad for part in parts]),
+        np.concatenate([part.place + first for part, first in zip(parts, firsts[:-1], strict=True)]),
+        np.concatenate([part.picked for part in parts]),
+    )
 
 
 def combine(at_mm: F64, q_rad: F64, each: int, touches: int, rng: np.random.Generator) -> Candidates:
     """`each` measurements in each place: all pairs where two features are touched once, else drawn."""
-    places, features, postures, _ = q_rad.shape
+    count, features, postures, _ = q_rad.shape
     if features == 2 and touches == 1:
         a, b = (grid.ravel()[:each] for grid in np.meshgrid(range(postures), range(postures), indexing="ij"))
-        picked = np.tile(np.stack([a, b], axis=1)[..., None], (places, 1, 1))
+        picked = np.tile(np.stack([a, b], axis=1)[..., None], (count, 1, 1))
         each = len(a)
     else:
-        drawn = rng.random((places * each, features, postures)).argsort(axis=2)
+        drawn = rng.random((count * each, features, postures)).argsort(axis=2)
         picked = np.sort(drawn[..., :touches], axis=2)
-    return Candidates(at_mm, q_rad, np.repeat(np.arange(places), each), picked.astype(np.int64))
-
-
-def stand(
-    spec: PlanSpec,
-    mover: Mover,
-    probe: int,
-    features_mm: F64,
-    count: int,
-    postures: int,
-    box: Box | None,
-    rng: np.random.Generator,
-) -> tuple[F64, F64]:
-    """(count, K, 3) places and directions at random within reach and box, (count, K, postures, n) postures there.
-
-    Raises UlnaInputError where none are found.
-    """
-    at: list[F64] = []
-    poses: list[F64] = []
-    missing, barren = count, 0
-    fixed = spec.artefact.frame == "arm"
-    while missing and barren < BARREN:
-        placed_mm = features_mm[None] if fixed else _near(mover, probe, features_mm, missing, box, rng)
-        points_mm = np.repeat(placed_mm.reshape(-1, 3), postures, axis=0)
-        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), None, int(rng.integers(2**63)))
-        shape = (len(placed_mm), len(features_mm), postures)
-        whole = np.flatnonzero(reached.reshape(shape).all(axis=(1, 2)))
-        at.append(placed_mm[whole])
-        poses.append(q_rad.reshape(*shape, mover.arm.n)[whole])
-        missing -= len(whole)
-        barren = 0 if len(whole) else barren + 1
-    if missing:
-        raise UlnaInputError(
-            f"{spec.label}: artefact '{spec.artefact.name}': only {count - missing} of {count} places were found in "
-            "which the arm reaches every feature; expected an artefact that fits. Take a smaller one, a larger box, or "
-            "a wider travel."
-        )
-    return np.concatenate(at), np.concatenate(poses)
-
-
-def _near(mover: Mover, probe: int, features_mm: F64, most: int, box: Box | None, rng: np.random.Generator) -> F64:
-    """At most so many places at which all features seem to be within reach."""
-    drawn = 8 * most + 200
-    anywhere = mover.arm.core.tip(mover.anywhere(drawn, rng), probe)
-    first_mm = anywhere if box is None else rng.uniform(*box, (drawn, 3))
-    at_mm = first_mm[:, None] + (features_mm - features_mm[0]) @ turns(features_mm, drawn, rng)
-    good = np.ones(drawn, dtype=bool)
-    for k in range(len(features_mm)):
-        good &= mover.near_reach(np.ascontiguousarray(at_mm[:, k]), probe)
-        if box is not None:
-            good &= ((at_mm[:, k] >= box[0]) & (at_mm[:, k] <= box[1])).all(axis=1)
-    kept: F64 = at_mm[good][:most]
-    return kept
+    return Candidates(at_mm, q_rad, np.repeat(np.arange(count), each), picked.astype(np.int64))

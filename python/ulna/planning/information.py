@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ulna.model import Arm
 from ulna.plan_spec import PlanSpec
 from ulna.planning.candidates import Candidates
+from ulna.planning.touchable import touchable, turned
 from ulna.study import Study
 
 F64 = NDArray[np.float64]
@@ -24,7 +25,7 @@ RANK_TOLERANCE = 1e-9
 """Singular values below this part of the largest are zero, as in the core."""
 VANISHED = 1e-10
 """Ten decades below its natural size a column is rounding, as in the core."""
-_BLOCK = 20_000
+_BLOCK = 5_000
 
 
 def whitened(arm: Arm, q_rad: F64, probe: int, free: I64, encoder_rad: F64, seat_mm: float) -> tuple[F64, F64]:
@@ -51,26 +52,44 @@ def reduced(wj: F64, w: F64, features_mm: F64, free_frame: bool) -> F64:
     turning = axes[:, 1:] if span == 1 else axes[:, : 3 if span else 0]
     translations = np.broadcast_to(np.eye(3), (count, touches, 3, 3))
     rotations = np.cross(turning[:, None], arms[:, :, None]).transpose(0, 1, 3, 2)
-    own = (w @ np.concatenate([translations, rotations], axis=3)).reshape(count, 3 * touches, -1)
+    return without((w @ np.concatenate([translations, rotations], axis=3)).reshape(count, 3 * touches, -1), rows)
+
+
+def without(own: F64, rows: F64) -> F64:
+    """(B, T, e), (B, T, p) → (B, T - e, p): the part of the rows that no combination of the e columns explains."""
     unknowns = own.shape[2]
     own = own / np.linalg.norm(own, axis=1, keepdims=True)
     q = np.linalg.qr(own, mode="complete").Q[:, :, unknowns:]
-    return q.transpose(0, 2, 1) @ rows
+    left: F64 = q.transpose(0, 2, 1) @ rows
+    return left
 
 
 def candidate_rows(spec: PlanSpec, arm: Arm, probe: int, free: I64, candidates: Candidates) -> F64:
     """(N, k, free) rows of every candidate."""
     places, features, postures, n = candidates.q_rad.shape
+    what = touchable(spec, arm, probe)
     noise = (spec.encoder_rad, spec.seat_mm)
     wj, w = whitened(arm, candidates.q_rad.reshape(-1, n), probe, free, *noise)
     wj = wj.reshape(places, features, postures, 3, -1)
     w = w.reshape(places, features, postures, 3, 3)
     touches = candidates.picked.shape[2]
     k = np.arange(features)[None, :, None]
+    on_surface = what.outward is not None
+    if on_surface:
+        assert what.outward is not None
+        outward = turned(what.at_mm, candidates.features_mm, what.outward)[:, :, None, :, None]
+        # the surface is seen along its normal alone: n J over the root of n Σ n, with Wᵀ W the inverse of Σ
+        across = np.linalg.solve(w.swapaxes(3, 4), np.broadcast_to(outward, (*w.shape[:3], 3, 1)))
+        sigma = np.linalg.norm(across, axis=3)
+        wj = (np.linalg.solve(w, wj) * outward).sum(axis=3) / sigma
     parts = []
     for start in range(0, len(candidates), _BLOCK):
         place = candidates.place[start : start + _BLOCK]
         at = (place[:, None, None], k, candidates.picked[start : start + _BLOCK])
+        if on_surface:
+            own = what.unknowns / sigma[at][:, :, 0]
+            parts.append(without(own, wj[at][:, :, 0]))
+            continue
         points = np.repeat(candidates.features_mm[place], touches, axis=1)
         flat = (len(place), features * touches, 3)
         parts.append(reduced(wj[at].reshape(*flat, -1), w[at].reshape(*flat, 3), points, spec.artefact.frame == "free"))

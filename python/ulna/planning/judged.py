@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ulna.model import Arm
 from ulna.plan_spec import PlanSpec
-from ulna.planning.candidates import stand
 from ulna.planning.information import Coordinates
+from ulna.virtual.places import Standing, places
 from ulna.virtual.postures import Mover
 
 F64 = NDArray[np.float64]
@@ -54,8 +54,8 @@ class Tests:
         """Draw them. Raises UlnaInputError where the volume holds no such bar."""
         ends_mm = np.array([[0.0, 0.0, 0.0], [test_mm(arm, spec, probe), 0.0, 0.0]])
         # the test bars stand anywhere
-        inside = replace(spec, artefact=replace(spec.artefact, name="test bar", frame="free"))
-        _, q_rad = stand(inside, mover, probe, ends_mm, LENGTHS, 1, spec.volume_mm, rng)
+        bar = Standing(ends_mm, f"{spec.label}: test bar", box_mm=spec.volume_mm)
+        _, q_rad = places(bar, mover, probe, LENGTHS, 1, rng)
         poses = np.ascontiguousarray(q_rad[:, :, 0])
         flat = poses.reshape(-1, arm.n)
         p_mm = arm.core.tip(flat, probe)
@@ -67,7 +67,7 @@ def test_mm(arm: Arm, spec: PlanSpec, probe: int) -> float:
     """Length of the test bars."""
     if spec.test_mm is not None:
         return spec.test_mm
-    points = np.array(list(spec.artefact.features.values()))
+    points = np.array(list(spec.artefact.features.values()) or [(0.0, 0.0, 0.0)])
     widest = float(np.linalg.norm(points[:, None] - points[None], axis=2).max())
     return widest if widest > 0.0 and spec.artefact.frame == "free" else 0.5 * arm.core.reach_mm(probe)
 

@@ -14,14 +14,17 @@ from numpy.typing import NDArray
 from ulna.errors import UlnaInputError
 from ulna.model import Arm
 from ulna.plan_spec import PlanSpec
-from ulna.planning.asking import check, free_parameters, travel
-from ulna.planning.candidates import EACH, Candidates, combine, draw
+from ulna.planning.asking import check, free_parameters
+from ulna.planning.candidates import EACH, ON_SURFACE, POSTURES, Candidates, combine
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
 from ulna.planning.judged import Tests
 from ulna.planning.order import in_order
+from ulna.planning.pieces import draw_all
 from ulna.planning.scene import Figures, Scene
+from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial, carry_out
-from ulna.virtual.postures import Mover
+from ulna.virtual.postures import Mover, travel_or_limits
+from ulna.work.pieces import Threads, Workers
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -62,7 +65,7 @@ class Plan:
     free: int
     candidates: int
     seconds: dict[str, float]
-    """Of drawing candidates, of their rows, and of choosing."""
+    """Of drawing candidates with their rows, of what they are judged by, and of choosing."""
 
     @property
     def q_rad(self) -> F64:
@@ -87,24 +90,31 @@ class Plan:
         return as_dict(self)
 
 
-def plan(arm: Arm, spec: PlanSpec, progress: Progress | None = None) -> Plan:
+def plan(
+    arm: Arm,
+    spec: PlanSpec,
+    progress: Progress | None = None,
+    *,
+    workers: Workers | None = None,
+    keep: str | Path | None = None,
+) -> Plan:
     """Choose measurements that make the spec's criterion small, and judge them beside random ones.
 
-    `progress` is called with (stage, done, total). Raises UlnaInputError for what cannot be asked; KeyboardInterrupt.
+    `progress` is called with (stage, done, total). workers: who draws candidates and does the trial's calibrations
+    (None: this process's threads); the choice itself is made here. keep: folder for the trial's finished pieces, from
+    which the same plan goes on. Raises UlnaInputError for what cannot be asked; KeyboardInterrupt.
     """
     check(arm, spec)
+    team = workers or Threads()
     told = progress if progress is not None else lambda *_: None
     rng = np.random.default_rng([spec.seed, 41])
     probe = arm.probe_index(spec.probe)
-    mover = Mover(arm, travel(arm, spec))
+    mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
     free = free_parameters(arm, spec)
     began = time.perf_counter()
-    told("candidates", 0, 3)
-    candidates = draw(spec, mover, probe, rng)
+    candidates, rows = draw_all(spec, arm, mover, probe, free, team, told)
     drawn = time.perf_counter()
-    told("candidates", 1, 3)
-    scene = _scene(arm, spec, mover, probe, free, candidates, rng)
-    told("candidates", 3, 3)
+    scene = _scene(arm, spec, mover, probe, free, rows, rng)
     directions = scene.directions(rng)
     if spec.placements is not None and spec.placements < spec.choose and spec.artefact.frame == "free":
         candidates, scene = _few_places(arm, spec, mover, probe, free, candidates, scene, directions, rng, told)
@@ -130,18 +140,15 @@ def plan(arm: Arm, spec: PlanSpec, progress: Progress | None = None) -> Plan:
         observability=observability(own, scene.coordinates),
         random_observability=observability(others, scene.coordinates),
         curve=[*_curve(scene, directions, rng, told), (spec.choose, planned.u_length_mm, random.u_length_mm)],
-        trial=_trial(arm, spec, mover, probe, free, candidates, chosen, scene, rng, told),
+        trial=_trial(arm, spec, mover, probe, free, candidates, chosen, scene, rng, told, team, keep),
         determined=scene.coordinates.rank,
         free=len(free),
         candidates=len(candidates),
-        seconds={"candidates": drawn - began, "rows": rowed - drawn, "choice": finished - rowed},
+        seconds={"candidates": drawn - began, "judging": rowed - drawn, "choice": finished - rowed},
     )
 
 
-def _scene(
-    arm: Arm, spec: PlanSpec, mover: Mover, probe: int, free: I64, candidates: Candidates, rng: np.random.Generator
-) -> Scene:
-    rows = candidate_rows(spec, arm, probe, free, candidates)
+def _scene(arm: Arm, spec: PlanSpec, mover: Mover, probe: int, free: I64, rows: F64, rng: np.random.Generator) -> Scene:
     taken = np.zeros((0, len(free))) if spec.taken is None else taken_rows(spec, spec.taken, arm, free)
     units = np.array(arm.parameter_units)[free]
     natural = np.where(units == "mm", 1.0, arm.core.reach_mm(probe))
@@ -172,9 +179,10 @@ def _few_places(
     best = together.choose(spec.placements, directions, told)
     at_mm = candidates.features_mm[best]
     each = -(-spec.candidates // spec.placements)
-    features = at_mm.shape[1]
-    pairs = features == 2 and spec.touches == 1
-    postures = int(np.ceil(np.sqrt(each))) if pairs else EACH
+    what, features = touchable(spec, arm, probe), at_mm.shape[1]
+    postures = int(np.ceil(np.sqrt(each))) if what.pairs else EACH
+    if what.outward is not None:
+        postures = ON_SURFACE * POSTURES
     points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
     q_rad, reached = mover.on_points(points, np.full(len(points), probe), None, int(rng.integers(2**63)))
     q_rad = q_rad.reshape(len(best), features, postures, -1)
@@ -185,7 +193,7 @@ def _few_places(
             q_rad[k, j] = candidates.q_rad[best[k], j, np.arange(postures) % candidates.q_rad.shape[2]]
         else:
             q_rad[k, j] = q_rad[k, j, np.resize(found, postures)]
-    inside = combine(at_mm, q_rad, each, spec.touches, rng)
+    inside = combine(at_mm, q_rad, each, what.touches, rng)
     rows = candidate_rows(spec, arm, probe, free, inside) @ scene.coordinates.to_free
     return inside, replace(scene, rows=np.ascontiguousarray(rows))
 
@@ -219,18 +227,16 @@ def _trial(
     scene: Scene,
     rng: np.random.Generator,
     told: Progress,
+    workers: Workers,
+    keep: str | Path | None,
 ) -> Trial | None:
     """On bars that no criterion has seen."""
     if not spec.trials or spec.taken is not None:
         return None
     fresh_rad = Tests.of(arm, spec, mover, probe, free, scene.coordinates, rng).q_rad
     some = [rng.choice(len(candidates), spec.choose, replace=False) for _ in range(TRIAL_SETS)]
-    told("trial", 0, 2)
-    own, good = carry_out(arm, spec, probe, free, [candidates.select(chosen)], fresh_rad, spec.trials, spec.seed)
-    told("trial", 1, 2)
-    sets = [candidates.select(which) for which in some]
-    others, also = carry_out(arm, spec, probe, free, sets, fresh_rad, spec.trials, spec.seed + 1)
-    return Trial(spec.trials, own, others, good + also)
+    sets = [candidates.poses(which) for which in [chosen, *some]]
+    return carry_out(arm, spec, probe, free, sets, fresh_rad, workers, keep, told)
 
 
 def _too_few(spec: PlanSpec, scene: Scene) -> UlnaInputError:

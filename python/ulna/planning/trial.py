@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.cores import available_cores
+from ulna.files.arm import arm_toml
 from ulna.model import Arm
 from ulna.plan_spec import PlanSpec
-from ulna.planning.candidates import Candidates
+from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.work.ledger import Ledger
+from ulna.work.pieces import Workers
 
 if TYPE_CHECKING:
     from ulna import _core
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
+Progress = Callable[[str, int, int], None]
+
+PIECE_RUNS = 50
+"""Calibrations in a piece: some tenths of a second where bars are touched at both ends."""
 
 
 @dataclass(frozen=True)
@@ -38,50 +47,109 @@ class Trial:
         return 1.0 - self.planned_mm / self.random_mm
 
 
-def problem_of(arm: Arm, spec: PlanSpec, probe: int, taken: Candidates) -> _core.Problem:
-    """The core's problem of these measurements, each a placement of its own, readings exact."""
+def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Problem:
+    """The core's problem of measurements (count, K, t, n), each a placement of its own, readings exact."""
     from ulna import _core
 
-    q_rad = taken.poses(np.arange(len(taken)))
     count, features, touches, n = q_rad.shape
     per = features * touches
     problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
-    problem.add_points(
-        spec.artefact.name,
-        np.array(list(spec.artefact.features.values()), dtype=np.float64),
-        spec.artefact.frame,
-        np.ascontiguousarray(q_rad.reshape(-1, n)),
-        np.full(count * per, probe, dtype=np.int64),
-        np.tile(np.repeat(np.arange(features), touches), count),
-        np.repeat(np.arange(count), per),
-    )
+    artefact = spec.artefact
+    flat = np.ascontiguousarray(q_rad.reshape(-1, n))
+    probes = np.full(count * per, probe, dtype=np.int64)
+    standing = np.repeat(np.arange(count), per)
+    balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
+    if artefact.kind == "sphere":
+        assert artefact.diameter_mm is not None
+        problem.add_sphere(
+            artefact.name, artefact.diameter_mm, balls_mm, flat, probes, standing, inside=artefact.inside
+        )
+    elif artefact.kind == "plane":
+        problem.add_plane(balls_mm, flat, probes, standing)
+    else:
+        points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
+        feature = np.tile(np.repeat(np.arange(features), touches), count)
+        problem.add_points(artefact.name, points_mm, artefact.frame, flat, probes, feature, standing)
     return problem
 
 
 def carry_out(
-    arm: Arm, spec: PlanSpec, probe: int, free: I64, sets: list[Candidates], bars_rad: F64, runs: int, seed: int
-) -> tuple[float, int]:
-    """Root mean square error (mm) of the (B, 2, n) bars by arms calibrated on these sets in turn, and how many of the
-    `runs` calibrations converged."""
-    from ulna import _core
+    arm: Arm,
+    spec: PlanSpec,
+    probe: int,
+    free: I64,
+    sets: list[F64],
+    bars_rad: F64,
+    workers: Workers,
+    keep: str | Path | None,
+    told: Progress,
+) -> Trial:
+    """`spec.trials` calibrations on the first set of poses (count, K, t, n), and as many on the others in turn; each
+    measures the (B, 2, n) bars.
 
+    keep: folder for finished pieces. Raises UlnaInputError where it cannot be used; KeyboardInterrupt.
+    """
     hold = np.ones(len(arm.parameter_names), dtype=bool)
     hold[free] = False
-    flat = np.ascontiguousarray(bars_rad.reshape(-1, arm.n))
+    others = len(sets) - 1
+    shares = [spec.trials, *(spec.trials // others + (k < spec.trials % others) for k in range(others))]
+    pieces = [
+        (number, first, min(PIECE_RUNS, share - first))
+        for number, share in enumerate(shares)
+        for first in range(0, share, PIECE_RUNS)
+    ]
+    work = partial(_piece, arm, spec, probe, hold, sets, np.ascontiguousarray(bars_rad.reshape(-1, arm.n)))
+    ledger = None
+    if keep is not None:
+        noise = repr((spec.encoder_rad.tolist(), spec.seat_mm, spec.artefact, probe))
+        job = {
+            "trials": spec.trials,
+            "seed": spec.seed,
+            "sha256": sha256_of(arm_toml(arm), noise, hold, bars_rad, *sets),
+        }
+        ledger = Ledger(Path(keep), {"job": "trial of a plan", **job})
+    found: dict[int, Arrays] = {}
+    told("trial", 0, 2 * spec.trials)
+    for number, arrays in each_once(workers, work, pieces, ledger):
+        found[number] = arrays
+        told("trial", sum(len(arrays["squares"]) for arrays in found.values()), 2 * spec.trials)
+    squares: dict[bool, list[F64]] = {True: [], False: []}
+    for number in range(len(pieces)):
+        squares[pieces[number][0] == 0].append(found[number]["squares"])
+    own, by_chance = (float(np.sqrt(np.mean(np.concatenate(squares[planned])))) for planned in (True, False))
+    good = sum(int(arrays["converged"].sum()) for arrays in found.values())
+    return Trial(spec.trials, own, by_chance, good)
+
+
+def _piece(
+    arm: Arm,
+    spec: PlanSpec,
+    probe: int,
+    hold: NDArray[np.bool_],
+    sets: list[F64],
+    bars_rad: F64,
+    piece: tuple[int, int, int],
+) -> Arrays:
+    """Which set, and runs (first, count): the mean square error (mm²) of the bars' lengths by each calibrated arm."""
+    from ulna import _core
+
+    number, first, count = piece
 
     def lengths(core: _core.Arm) -> F64:
-        ends = core.tip(flat, probe).reshape(-1, 2, 3)
+        ends = core.tip(bars_rad, probe).reshape(-1, 2, 3)
         distance: F64 = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return distance
 
     true_mm = lengths(arm.core)
-    squares, good = [], 0
-    for number, taken in enumerate(sets):
-        problem = problem_of(arm, spec, probe, taken)
-        own = runs // len(sets) + (number < runs % len(sets))
-        parameters, _, converged = _core.recalibrate(
-            problem, hold, arm.core, own, seed=seed + number, threads=available_cores(), uncertainties=False
-        )
-        good += int(converged.sum())
-        squares += [np.mean((lengths(arm.core.with_parameters(row)) - true_mm) ** 2) for row in parameters]
-    return float(np.sqrt(np.mean(squares))), good
+    parameters, _, converged = _core.recalibrate(
+        problem_of(arm, spec, probe, sets[number]),
+        hold,
+        arm.core,
+        count,
+        seed=spec.seed + number,
+        threads=1,
+        uncertainties=False,
+        first=first,
+    )
+    squares = [np.mean((lengths(arm.core.with_parameters(row)) - true_mm) ** 2) for row in parameters]
+    return {"squares": np.array(squares), "converged": converged}

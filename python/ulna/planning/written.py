@@ -13,6 +13,7 @@ import polars as pl
 from ulna.files.output import output_folder
 from ulna.planning.plan import Plan
 from ulna.planning.scene import Figures
+from ulna.planning.touchable import touchable, turned
 
 FORMAT = "ulna-plan-result/1"
 FILES = ["plan.csv", "plan.json", "places.svg", "places.png", "curve.svg", "curve.png"]
@@ -33,27 +34,32 @@ def save(plan: Plan, folder: Path, force: bool = False) -> None:
 def steps(plan: Plan) -> pl.DataFrame:
     """One row a touch, in order of work: mm, base frame; angles in rad and in degrees.
 
-    `stand`: equal while the artefact stays where it is. `placement`: one for each measurement, as a study wants it.
+    direction: from the first feature to the last; on a surface its outward normal at the touch. `stand`: equal while
+    the artefact stays where it is. `placement`: one for each measurement, as a study wants it.
     """
     q_rad = plan.q_rad
     count, features, touches, n = q_rad.shape
     per = features * touches
+    what = touchable(plan.spec, plan.arm, plan.arm.probe_index(plan.spec.probe))
     stands = np.concatenate([[0], np.cumsum(np.diff(plan.chosen.place) != 0)])
     points = plan.chosen.features_mm[plan.chosen.place]
-    away = points[:, -1] - points[:, 0]
-    length = np.linalg.norm(away, axis=1, keepdims=True)
-    direction = np.divide(away, length, out=np.zeros_like(away), where=length > 0)
+    if what.outward is None:
+        away = points[:, -1] - points[:, 0]
+        length = np.linalg.norm(away, axis=1, keepdims=True)
+        direction = np.divide(away, length, out=np.zeros_like(away), where=length > 0).repeat(per, axis=0)
+    else:
+        direction = turned(what.at_mm, points, what.outward).reshape(-1, 3)
     each = np.repeat(points, touches, axis=1).reshape(-1, 3).round(2)
     columns: dict[str, Any] = {
         "step": np.arange(1, count * per + 1),
         "stand": np.repeat(stands + 1, per),
         "placement": np.repeat(np.arange(1, count + 1), per),
         "artefact": [plan.spec.artefact.name] * (count * per),
-        "feature": [name for name in plan.spec.artefact.features for _ in range(touches)] * count,
+        ("feature" if what.outward is None else "touch"): [name for name in what.names for _ in range(touches)] * count,
         "probe": [plan.spec.probe or next(iter(plan.arm.probes))] * (count * per),
     }
     columns |= {axis: each[:, k] for k, axis in enumerate("xyz")}
-    columns |= {f"direction_{axis}": np.repeat(direction[:, k].round(4), per) for k, axis in enumerate("xyz")}
+    columns |= {f"direction_{axis}": direction[:, k].round(4) for k, axis in enumerate("xyz")}
     flat = q_rad.reshape(-1, n)
     columns |= {f"q{k + 1}": flat[:, k].round(6) for k in range(n)}
     columns |= {f"q{k + 1}_deg": np.degrees(flat[:, k]).round(2) for k in range(n)}

@@ -57,12 +57,7 @@ def per_placement(entries: Sequence[PlacementFigures], everything: str) -> list[
     """One row per artefact and placement; of very many the first, and where the rest is (`everything`)."""
     present = {name for entry in entries for name in entry.figures}
     columns = [name for name in _SHORT if name in present]
-    if all(
-        entry.figures.get("length_error_mean_abs_mm") == entry.figures.get("length_error_max_abs_mm")
-        for entry in entries
-    ):
-        # one length in each placement: its signed error says all
-        columns = [name for name in columns if name not in ("length_error_mean_abs_mm", "length_error_max_abs_mm")]
+    columns = without_repeats(entries, columns)
     heads = ["artefact", "placement", "readings", *(f"{_SHORT[name]}\nmm" for name in columns)]
     rows = [
         [entry.artefact, entry.placement, str(entry.readings), *(_cell(entry.figures, name) for name in columns)]
@@ -72,6 +67,14 @@ def per_placement(entries: Sequence[PlacementFigures], everything: str) -> list[
     if len(entries) > MOST_ROWS:
         parts.append(Text(f"… and {len(entries) - MOST_ROWS} more placements: {everything}"))
     return parts
+
+
+def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
+    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
+    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
+    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
+        return [name for name in columns if name not in (mean, largest)]
+    return list(columns)
 
 
 def _cell(figures: Mapping[str, float], name: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -11,17 +10,18 @@ from typing import Any
 import numpy as np
 
 from ulna.errors import InputWarning, UlnaInputError
-from ulna.files.arm import arm_of_result
-from ulna.files.covariance import noise_of_result, seat_of_result
 from ulna.files.task import read_task
-from ulna.files.toml import check_format, read_json
+from ulna.files.volume import read_volume
 from ulna.study import Study
 from ulna.uncertainty.assess import Assessment, assess
+from ulna.uncertainty.known import Known, known_of_performance, known_of_result
 from ulna.uncertainty.measurands import MEASURANDS, Touched
 from ulna.uncertainty.task import Task
+from ulna.uncertainty.volume import VolumeMap, VolumeTask, volume_map
+from ulna.virtual.postures import travel_or_limits
+from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
-
-WHAT = "the result.json of a calibration"
+from ulna.work.recalibrations import job_of
 
 Progress = Callable[[str, int, int], None]
 
@@ -31,35 +31,46 @@ def uncertainty(
     task: str | Path,
     *,
     study: Study | None = None,
+    performance: str | Path | None = None,
     seed: int = 0,
     most_trials: int = 1_000_000,
     workers: Workers | None = None,
+    keep: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
     """How sure a measurement is: of a calibrated arm (`result.json`, or the folder of one) and a task file.
 
+    performance: a performance file, where the calibration is not at hand; then `result` is an arm.toml.
+
     study: the study of that calibration, to repeat whole calibrations on new noise; else parameters are drawn from the
-    result's covariance. most_trials: of the Monte Carlo calculation; 0: first order alone. Raises UlnaInputError;
-    KeyboardInterrupt.
+    result's covariance. most_trials: of the Monte Carlo calculation; 0: first order alone. keep: folder for finished
+    calibrations, from which the same question goes on. Raises UlnaInputError; KeyboardInterrupt.
     """
     result, task = Path(result), Path(task)
-    result = result / "result.json" if result.is_dir() else result
-    document, _ = read_json(result, WHAT)
-    check_format(document, result, "ulna-result")
-    arm = arm_of_result(document, result)
-    made = document.get("provenance", {})
+    if performance is not None and study is not None:
+        raise UlnaInputError(
+            f"{performance}: stands for a calibration that is not at hand, but {study.label} is one; expected one of "
+            "them. Leave one out."
+        )
+    known = _known(result, performance, seed, workers, progress)
+    arm = known.arm
+    ledger = None
     if study is not None:
-        check_same(study, made, result)
+        check_same(study, known.made, result)
+        if keep is not None:
+            ledger = Ledger(Path(keep), job_of(study, arm, most_trials, seed))
+    elif keep is not None:
+        raise UlnaInputError(
+            f"{keep}: finished calibrations are to be kept there, but none are made; expected the study that they "
+            "repeat. Name it (--study), or keep nothing."
+        )
     remarks: list[str] = []
     stated = read_task(task, arm, {kind: list(found.features) for kind, found in MEASURANDS.items()}, remarks)
     for remark in remarks:
         warnings.warn(remark, InputWarning, stacklevel=2)
     touched = Touched(stated.file.kind, stated.feature)
     touched.check(str(task))
-    encoder_rad, seat_mm = noise_of_result(document, arm, result), seat_of_result(document, result)
-    if stated.noise is not None:
-        encoder_rad = encoder_rad if stated.noise.encoder_rad is None else stated.noise.encoder_rad
-        seat_mm = seat_mm if stated.noise.seat_mm is None else stated.noise.seat_mm
+    encoder_rad, seat_mm = known.noise(stated.noise)
     warm = stated.file.temperature
     return assess(
         arm,
@@ -73,7 +84,7 @@ def uncertainty(
             temperature_c=None if warm is None else warm.value,
             u_temperature_k=0.0 if warm is None or "link-expansion" not in arm.extras else warm.u,
             inside=stated.file.inside,
-            degrees_of_freedom=math.inf if made.get("noise") else float(document["fit"]["degrees_of_freedom"]),
+            degrees_of_freedom=known.degrees_of_freedom,
             p=stated.file.p,
             digits=stated.file.digits,
         ),
@@ -81,8 +92,51 @@ def uncertainty(
         seed=seed,
         most_trials=most_trials,
         workers=workers,
+        ledger=ledger,
+        arms=known.arms,
         progress=progress,
     )
+
+
+def volume_uncertainty(
+    result: str | Path,
+    task: str | Path,
+    *,
+    performance: str | Path | None = None,
+    seed: int = 0,
+    workers: Workers | None = None,
+    progress: Progress | None = None,
+) -> VolumeMap:
+    """How sure points and lengths are all over the volume: of a calibrated arm (`result.json`, or the folder of one)
+    and a volume file; performance as for `uncertainty`. Raises UlnaInputError; KeyboardInterrupt."""
+    known = _known(Path(result), performance, seed, workers, progress)
+    stated = read_volume(Path(task), known.arm)
+    encoder_rad, seat_mm = known.noise(stated.noise)
+    warm = stated.file.temperature
+    asked = VolumeTask(
+        travel_rad=travel_or_limits(known.arm, stated.travel_rad, str(task)),
+        probe=stated.probe,
+        label=str(task),
+        encoder_rad=encoder_rad,
+        seat_mm=seat_mm,
+        lengths_mm=stated.lengths_mm,
+        points=stated.file.points,
+        bars=stated.file.bars,
+        box_mm=stated.box_mm,
+        temperature_c=None if warm is None else warm.value,
+        u_temperature_k=0.0 if warm is None or "link-expansion" not in known.arm.extras else warm.u,
+        degrees_of_freedom=known.degrees_of_freedom,
+        p=stated.file.p,
+    )
+    return volume_map(known.arm, asked, seed, progress)
+
+
+def _known(
+    result: Path, performance: str | Path | None, seed: int, workers: Workers | None, progress: Progress | None
+) -> Known:
+    if performance is None:
+        return known_of_result(result)
+    return known_of_performance(result, Path(performance), seed, workers, progress)
 
 
 def check_same(study: Study, made: dict[str, Any], result: Path) -> None:

@@ -14,15 +14,18 @@ from numpy.typing import NDArray
 import ulna
 from ulna.directions import worth_naming
 from ulna.errors import UlnaInputError
-from ulna.model import Arm
+from ulna.model import Arm, ParameterCovariance
 from ulna.study import Study
+from ulna.uncertainty.constrained import Constrained, Shares
 from ulna.uncertainty.first_order import first_order
 from ulna.uncertainty.gum import coverage_factor, effective_degrees_of_freedom
+from ulna.uncertainty.left_out import left_out
 from ulna.uncertainty.monte_carlo import MonteCarlo, adaptive, agrees
 from ulna.uncertainty.regions import Ellipsoid, ellipsoid
 from ulna.uncertainty.task import Task, chi_squared_in_blocks, in_blocks
+from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
-from ulna.work.recalibrations import PIECE_RUNS, recalibrated
+from ulna.work.recalibrations import recalibrated
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -30,22 +33,26 @@ Sets = Callable[[int, int], F64]
 """(first, count) → (count, P) parameters of as many trials."""
 
 FORMAT = "ulna-uncertainty/1"
+MOST_ARMS = 100_000
+"""Arms that agree with a performance test: each costs some fifty that do not."""
 
 
 @dataclass(frozen=True)
 class Value:
-    """One of the values of a measurand, mm."""
+    """One of the values of a measurand."""
 
     name: str
-    value_mm: float
-    u_mm: float | None
+    unit: str
+    """"mm" or "1": of the value and of its uncertainties."""
+    value: float
+    u: float | None
     """First order; None where the value is not determined, or nothing can be estimated."""
-    expanded_mm: float | None
+    expanded: float | None
     """u times the coverage factor k."""
     k: float | None
     """From Student's t where the calibration estimated the noise from its own residuals (GUM G.4.1), else normal."""
     budget: dict[str, float]
-    """Source → its standard uncertainty, mm; empty where there is none."""
+    """Source → its standard uncertainty; empty where there is none."""
     monte_carlo: MonteCarlo | None
     first_order_is_good: bool | None
     """By JCGM 101 clause 8; None without a Monte Carlo calculation, or before it is steady."""
@@ -62,19 +69,22 @@ class Assessment:
     readings: int
     p: float
     values: list[Value]
-    covariance_mm2: F64
-    """(values, values) first order; NaN where not determined."""
+    covariance: F64
+    """(values, values) first order, in the values' units; NaN where not determined."""
     region: Ellipsoid | None
     """Of a point, JCGM 102: where it is with probability p; None where the noise was estimated."""
     parameters_from: str
-    """"covariance" or "recalibrations": where the Monte Carlo calculation took the arm's parameters from."""
+    """"covariance", "recalibrations" or "performance": where the Monte Carlo calculation took the arm's parameters
+    from."""
+    arms: Shares | None
+    """Of arms drawn for a performance test, how many agreed."""
     left_out: list[str]
     seed: int
     most_trials: int
 
     def as_dict(self) -> dict[str, Any]:
         """`uncertainty.json`: JSON types only, no NaN."""
-        covariance = [[value if np.isfinite(value) else None for value in row] for row in self.covariance_mm2.tolist()]
+        covariance = [[value if np.isfinite(value) else None for value in row] for row in self.covariance.tolist()]
         region = None
         if self.region is not None:
             region = {
@@ -93,9 +103,10 @@ class Assessment:
             "most_trials": self.most_trials,
             "p": self.p,
             "values": [asdict(value) for value in self.values],
-            "covariance_mm2": covariance,
+            "covariance": covariance,
             "region": region,
             "parameters_from": self.parameters_from,
+            "arms": None if self.arms is None else asdict(self.arms),
             "left_out": self.left_out,
         }
         plain: dict[str, Any] = json.loads(json.dumps(document, allow_nan=False))  # tuples are lists there
@@ -110,14 +121,71 @@ def assess(
     seed: int = 0,
     most_trials: int = 1_000_000,
     workers: Workers | None = None,
+    ledger: Ledger | None = None,
+    arms: Constrained | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
     """First order and Monte Carlo, for an arm that a calibration made (`arm.uncertainty` is set).
 
     study: the study that it was calibrated by: then the parameters of each trial are those of a whole calibration on
-    new noise, else they are drawn from the covariance. most_trials 0: no Monte Carlo calculation. Raises UlnaInputError
-    for an arm of which no uncertainty is known; KeyboardInterrupt.
+    new noise, else they are drawn from the covariance. most_trials 0: no Monte Carlo calculation. ledger: keeps
+    calibrations that are finished. arms: in place of a calibration, those that agree with a performance test, and
+    `arm.uncertainty` is theirs. Raises UlnaInputError for an arm of which no uncertainty is known;
+    KeyboardInterrupt.
     """
+    known = check_known(arm)
+    found = first_order(arm, task)
+    units = task.touched.measurand.units
+    determined = [not directions for directions in found.open]
+    simulated: list[MonteCarlo | None] = [None] * len(units)
+    if most_trials and any(determined):
+        sets: Sets
+        if arms is not None:
+            sets = arms.sets
+            most_trials = min(most_trials, MOST_ARMS)
+        elif study is None:
+            sets = _from_covariance(arm, task.degrees_of_freedom, seed)
+        else:
+            sets = _from_study(study, arm, seed, workers or Threads(), ledger)
+        simulated = _simulated(arm, task, sets, seed, most_trials, progress)
+    covariance = found.covariance
+    values = []
+    for number, (name, unit) in enumerate(units.items()):
+        y = float(found.values[number])
+        lost = [known.lost[direction] for direction in found.open[number]]
+        if lost:
+            values.append(Value(name, unit, y, None, None, None, {}, None, None, lost))
+            covariance[number, :] = covariance[:, number] = np.nan
+            continue
+        budget = found.u_by_source(number)
+        u = float(np.sqrt(sum(part**2 for part in budget.values())))
+        k = coverage_factor(task.p, _degrees_of_freedom(budget, task))
+        trial = simulated[number]
+        good = agrees(y, k * u, trial, task.digits)[0] if trial is not None and trial.settled else None
+        values.append(Value(name, unit, y, u, k * u, k, budget, trial, good, []))
+    source = "performance" if arms is not None else "covariance" if study is None else "recalibrations"
+    point = task.touched.kind == "point" and all(determined) and math.isinf(task.degrees_of_freedom)
+    return Assessment(
+        kind=task.touched.kind,
+        probe=task.probe,
+        readings=len(task.q_rad),
+        p=task.p,
+        values=values,
+        covariance=covariance,
+        region=ellipsoid(found.values, covariance, task.p) if point else None,
+        parameters_from=source,
+        arms=None if arms is None else arms.shares,
+        left_out=[
+            *([] if arms is None else arms.assumed),
+            *left_out(arm, task.encoder_rad, task.seat_mm, task.u_temperature_k, found.exact),
+        ],
+        seed=seed,
+        most_trials=most_trials,
+    )
+
+
+def check_known(arm: Arm) -> ParameterCovariance:
+    """What is known of an arm's parameters. Raises UlnaInputError where nothing is."""
     if arm.uncertainty is None:
         raise UlnaInputError(
             f"arm '{arm.name}': no uncertainty is known of it; expected the result.json of a calibration, not an arm "
@@ -128,45 +196,7 @@ def assess(
             f"arm '{arm.name}': its calibration had no degrees of freedom to estimate uncertainties from. Calibrate "
             "with more readings, or state the noise in the study."
         )
-    found = first_order(arm, task)
-    names = task.touched.measurand.names
-    determined = [not directions for directions in found.open]
-    simulated: list[MonteCarlo | None] = [None] * len(names)
-    if most_trials and any(determined):
-        if study is None:
-            sets = _from_covariance(arm, task.degrees_of_freedom, seed)
-        else:
-            sets = _from_study(study, arm, seed, workers or Threads())
-        simulated = _simulated(arm, task, sets, seed, most_trials, progress)
-    covariance = found.covariance
-    values = []
-    for number, name in enumerate(names):
-        value_mm = float(found.values_mm[number])
-        lost = [arm.uncertainty.lost[direction] for direction in found.open[number]]
-        if lost:
-            values.append(Value(name, value_mm, None, None, None, {}, None, None, lost))
-            covariance[number, :] = covariance[:, number] = np.nan
-            continue
-        budget = found.u_by_source(number)
-        u = float(np.sqrt(sum(part**2 for part in budget.values())))
-        k = coverage_factor(task.p, _degrees_of_freedom(budget, task))
-        trial = simulated[number]
-        good = agrees(value_mm, k * u, trial, task.digits)[0] if trial is not None and trial.settled else None
-        values.append(Value(name, value_mm, u, k * u, k, budget, trial, good, []))
-    point = task.touched.kind == "point" and all(determined) and math.isinf(task.degrees_of_freedom)
-    return Assessment(
-        kind=task.touched.kind,
-        probe=task.probe,
-        readings=len(task.q_rad),
-        p=task.p,
-        values=values,
-        covariance_mm2=covariance,
-        region=ellipsoid(found.values_mm, covariance, task.p) if point else None,
-        parameters_from="covariance" if study is None else "recalibrations",
-        left_out=_left_out(arm, task, found.exact),
-        seed=seed,
-        most_trials=most_trials,
-    )
+    return arm.uncertainty
 
 
 def _degrees_of_freedom(budget: dict[str, float], task: Task) -> float:
@@ -193,7 +223,7 @@ def _simulated(
             lambda first, count: trials(first, count)[:, value], task.p, task.digits, most=most, progress=progress
         )
 
-    return [of(value) for value in range(len(task.touched.measurand.names))]
+    return [of(value) for value in range(len(task.touched.measurand.units))]
 
 
 def _from_covariance(arm: Arm, degrees_of_freedom: float, seed: int) -> Sets:
@@ -218,7 +248,7 @@ def _from_covariance(arm: Arm, degrees_of_freedom: float, seed: int) -> Sets:
     return sets
 
 
-def _from_study(study: Study, arm: Arm, seed: int, workers: Workers) -> Sets:
+def _from_study(study: Study, arm: Arm, seed: int, workers: Workers, ledger: Ledger | None) -> Sets:
     if study.noise is None:
         raise UlnaInputError(
             f"{study.label}: calibrations are repeated on noise drawn anew, but no noise is stated; expected [noise]. "
@@ -226,44 +256,26 @@ def _from_study(study: Study, arm: Arm, seed: int, workers: Workers) -> Sets:
         )
 
     def sets(first: int, count: int) -> F64:
-        pieces = [(k, min(PIECE_RUNS, first + count - k)) for k in range(first, first + count, PIECE_RUNS)]
-        done = recalibrated(study, arm, seed, pieces, workers)
-        lost = sum(int((~piece["converged"]).sum()) for piece in done.values())
+        done = recalibrated(study, arm, seed, first, count, workers, ledger)
+        lost = int((~done["converged"]).sum())
         if lost:
             raise UlnaInputError(
                 f"{study.label}: {lost} of {count} calibrations on new noise did not converge; expected all, else "
                 "their figures mean nothing. Look at the calibration itself, or leave the study out."
             )
-        return np.concatenate([done[number]["parameters"] for number in range(len(pieces))])[:, : len(arm.parameters)]
+        found: F64 = done["parameters"][:, : len(arm.parameters)]
+        return found
 
     return sets
 
 
-def _left_out(arm: Arm, task: Task, exact: list[str]) -> list[str]:
-    """What is not in the figures, in words."""
-    left = []
-    if exact:
-        left.append(f"parameters that the calibration held, which count as exact: {', '.join(exact)}")
-    if task.encoder_rad is None:
-        left.append("the encoders' noise while measuring: nobody stated it")
-    if task.seat_mm is None:
-        left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
-    if "link-expansion" not in arm.extras:
-        left.append("links that grow with temperature: the arm's model has none")
-    elif not task.u_temperature_k:
-        left.append("the uncertainty of the temperature: nobody stated it")
-    if "encoder-harmonics" not in arm.extras:
-        left.append("eccentric encoders: the arm's model has none")
-    if "compliance" not in arm.extras:
-        left.append("joints that give way under load: the arm's model has none")
-    left.append("the form and the temperature of what is measured")
-    left.append("errors of the calibration's artefact beyond the u that its study states")
-    return left
-
-
 def not_determined(value: Value) -> str:
     """In a sentence, why a value has no uncertainty and what would help."""
-    first = value.not_determined[0]
-    because, remedy = (first[key].rstrip(".") for key in ("because", "remedy"))
-    names = ", ".join(worth_naming(first["combination"]))
-    return f"{value.name} depends on {names}, which the calibration left open. Why: {because}. Remedy: {remedy}."
+    return depends_on(value.name, value.not_determined[0])
+
+
+def depends_on(what: str, direction: dict[str, Any]) -> str:
+    """In a sentence, on which direction that the calibration left open something depends, why, and what would help."""
+    because, remedy = (direction[key].rstrip(".") for key in ("because", "remedy"))
+    names = ", ".join(worth_naming(direction["combination"]))
+    return f"{what} depends on {names}, which the calibration left open. Why: {because}. Remedy: {remedy}."

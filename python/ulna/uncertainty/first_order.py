@@ -18,6 +18,10 @@ F64 = NDArray[np.float64]
 
 NOTHING_MM = 1e-3
 """A length of no more is none: its ends are nearer than the steps of its derivatives."""
+MOVES = {"mm": MOVES_MM, "1": 1e-5}
+"""A lost direction matters that moves a value by more, by its unit."""
+LARGEST = 100.0
+"""Derivative of a value by a touch that is beyond all sense, mm per mm."""
 STEP_K = 0.01
 """Of temperature, for its derivative."""
 
@@ -26,10 +30,10 @@ STEP_K = 0.01
 class FirstOrder:
     """Values and their covariance, by source."""
 
-    values_mm: F64
-    """(values,)"""
+    values: F64
+    """(values,) in the measurand's units."""
     by_source: dict[str, F64]
-    """Source → (values, values) covariance, mm². The sources are independent of each other."""
+    """Source → (values, values) covariance. The sources are independent of each other."""
     open: list[list[int]]
     """For each value the lost directions, by number, on which it depends: it is not determined."""
 
@@ -37,12 +41,12 @@ class FirstOrder:
     """Parameters that the values depend on and of which no uncertainty is known: they were held, and count as exact."""
 
     def u_by_source(self, value: int) -> dict[str, float]:
-        """Source → standard uncertainty of one of the values, mm."""
+        """Source → standard uncertainty of one of the values."""
         return {name: float(np.sqrt(max(part[value, value], 0.0))) for name, part in self.by_source.items()}
 
     @property
     def covariance(self) -> F64:
-        """(values, values) mm², of all sources."""
+        """(values, values) of all sources."""
         total: F64 = np.sum(list(self.by_source.values()), axis=0)
         return total
 
@@ -57,7 +61,7 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
             f"{task.label}: A and B are in the same place; expected two places, a length of nothing has no direction. "
             "Correct the readings."
         )
-    gradient = task.touched.gradient(tips_mm)
+    gradient = _gradient(task, tips_mm)
     by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, task.temperature_c))
     sources = {"parameters": propagate(by_parameter, known.over(arm.parameter_names))}
     if task.encoder_rad is not None:
@@ -74,10 +78,11 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
         by_kelvin = ((change[0] - change[1]) / (2.0 * STEP_K))[:, None]
         sources["temperature"] = propagate(by_kelvin, np.array([[task.u_temperature_k**2]]))
     values = task.values(arm, tips_mm[None])[0]
-    return FirstOrder(values, sources, _open(arm, by_parameter), _exact(arm, by_parameter))
+    moves = np.array([MOVES[unit] for unit in task.touched.measurand.units.values()])
+    return FirstOrder(values, sources, _open(arm, by_parameter, moves), _exact(arm, by_parameter, moves))
 
 
-def _open(arm: Arm, by_parameter: F64) -> list[list[int]]:
+def _open(arm: Arm, by_parameter: F64, moves: F64) -> list[list[int]]:
     """For each value, the lost directions that move it by more than is nothing when they move as far as a drawing
     leaves open. Those of the base frame move no shape; coordinates are meant in the frame that the arm has."""
     known = arm.uncertainty
@@ -90,16 +95,31 @@ def _open(arm: Arm, by_parameter: F64) -> list[list[int]]:
         weights = direction["combination"]
         most = max(steps(weights).values())
         moved = sum(by_parameter[:, names.index(name)] * weight for name, weight in weights.items()) / most
-        for value in np.flatnonzero(np.abs(moved) > MOVES_MM).tolist():
+        for value in np.flatnonzero(np.abs(moved) > moves).tolist():
             found[value].append(number)
     return found
 
 
-def _exact(arm: Arm, by_parameter: F64) -> list[str]:
+def _gradient(task: Task, tips_mm: F64) -> F64:
+    """Raises UlnaInputError where the touches do not say what is asked of them: all on a line, say, of a plane."""
+    try:
+        gradient = task.touched.gradient(tips_mm)
+        largest = float(np.abs(gradient).max())
+    except np.linalg.LinAlgError:
+        largest = np.inf
+    if not largest < LARGEST:
+        raise UlnaInputError(
+            f"{task.label}: the touches hardly say what is asked, a {task.touched.kind}: 1 µm at one of them changes "
+            f"it by more than {LARGEST / 1000:g} mm. Expected touches that are spread over it; spread them."
+        )
+    return gradient
+
+
+def _exact(arm: Arm, by_parameter: F64, moves: F64) -> list[str]:
     """Parameters of unknown uncertainty that move a value when they are off by as much as a drawing leaves open."""
     known = arm.uncertainty
     assert known is not None
-    matters = np.abs(by_parameter).max(axis=0)
+    matters = (np.abs(by_parameter) / moves[:, None]).max(axis=0)
     names = [name for name in arm.parameter_names if name not in known.names]
     size = {name: matters[arm.parameter_names.index(name)] * DRAWN[unit_of(name)] for name in names}
-    return [name for name in names if size[name] > MOVES_MM]
+    return [name for name in names if size[name] > 1.0]

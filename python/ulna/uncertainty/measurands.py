@@ -1,4 +1,5 @@
-"""What is measured with an arm: a point, a length, a ball, the distance of a point from a plane. Lengths mm.
+"""What is measured with an arm: a point, a length, a ball or a plane and their form, the distance of a point from a
+plane. Lengths mm.
 
 Each is a function of the tip's positions at some poses, each pose at a named feature; it is evaluated for many sets of
 positions at once.
@@ -28,8 +29,8 @@ class Measurand:
 
     features: dict[str, int]
     """What is touched → how often at the least."""
-    names: tuple[str, ...]
-    """Of its values, all in mm."""
+    units: dict[str, str]
+    """Name of each of its values → "mm" or "1"."""
     of: Callable[..., F64]
     """One (T, N, 3) of tip positions for each feature → (T, values)."""
 
@@ -46,8 +47,23 @@ def _length(a: F64, b: F64) -> F64:
 
 def _ball(touches: F64) -> F64:
     """Centre and diameter of the least-squares sphere."""
-    sphere = fit_sphere(touches, "ball")
-    return np.concatenate([sphere.centre_mm, 2.0 * sphere.radius_mm[:, None]], axis=1)
+    found = fit_sphere(touches, "ball")
+    return np.concatenate([found.centre_mm, 2.0 * found.radius_mm[:, None]], axis=1)
+
+
+def _sphericity(touches: F64) -> F64:
+    return fit_sphere(touches, "ball").form_mm[:, None]
+
+
+def _plane(touches: F64) -> F64:
+    """Normal, towards the base, and distance from the origin: both turn with the base frame."""
+    found = fit_plane(touches, "plane")
+    d_mm = -(found.normal * found.point_mm).sum(axis=1, keepdims=True)
+    return np.concatenate([found.normal, d_mm], axis=1)
+
+
+def _flatness(touches: F64) -> F64:
+    return fit_plane(touches, "plane").form_mm[:, None]
 
 
 def _distance(plane: F64, point: F64) -> F64:
@@ -56,10 +72,13 @@ def _distance(plane: F64, point: F64) -> F64:
 
 
 MEASURANDS: dict[str, Measurand] = {
-    "point": Measurand({"point": 1}, ("x", "y", "z"), _point),
-    "length": Measurand({"A": 1, "B": 1}, ("length",), _length),
-    "ball": Measurand({"ball": 4}, ("x", "y", "z", "diameter"), _ball),
-    "distance": Measurand({"plane": 3, "point": 1}, ("distance",), _distance),
+    "point": Measurand({"point": 1}, {"x": "mm", "y": "mm", "z": "mm"}, _point),
+    "length": Measurand({"A": 1, "B": 1}, {"length": "mm"}, _length),
+    "ball": Measurand({"ball": 4}, {"x": "mm", "y": "mm", "z": "mm", "diameter": "mm"}, _ball),
+    "sphericity": Measurand({"ball": 5}, {"form": "mm"}, _sphericity),
+    "plane": Measurand({"plane": 3}, {"n_x": "1", "n_y": "1", "n_z": "1", "d": "mm"}, _plane),
+    "flatness": Measurand({"plane": 4}, {"form": "mm"}, _flatness),
+    "distance": Measurand({"plane": 3, "point": 1}, {"distance": "mm"}, _distance),
 }
 
 
@@ -92,7 +111,7 @@ class Touched:
                 )
 
     def values(self, tips_mm: F64) -> F64:
-        """(T, N, 3) tip positions → (T, values), mm."""
+        """(T, N, 3) tip positions → (T, values), in their units."""
         groups = (tips_mm[:, self.feature == k] for k in range(len(self.measurand.features)))
         return self.measurand.of(*groups)
 

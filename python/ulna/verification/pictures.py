@@ -26,17 +26,20 @@ def draw_lengths(states: list[StateResult], folder: Path) -> None:
     ]
     names = list(dict.fromkeys(figure.definition.name for _, figure in tested))
     columns = list(dict.fromkeys(state for state, _ in tested))
+    # one state: the tests side by side; two: a row for each test, so that the states stand side by side
+    rows, across = (1, len(names)) if len(columns) == 1 else (len(names), len(columns))
     with rc_context(STYLE):
-        figure = Figure(figsize=(4.4 * len(columns) + 0.4, 2.9 * len(names) + 0.5), layout="constrained")
-        panels = figure.subplots(len(names), len(columns), squeeze=False, sharey="row", sharex=True)
+        figure = Figure(figsize=(4.4 * across + 0.4, 2.9 * rows + 0.5), layout="constrained")
+        panels = figure.subplots(rows, across, squeeze=False, sharey="row" if len(columns) > 1 else False, sharex=True)
+        empty = set(panels.flat)
         for state, found in tested:
-            axes = panels[names.index(found.definition.name), columns.index(state)]
+            row, column = names.index(found.definition.name), columns.index(state)
+            axes = panels[row, column] if len(columns) > 1 else panels[0, row]
+            empty.discard(axes)
             _panel(axes, found)
             axes.set_title(f"{found.definition.key}, {state}")
-        for row, name in enumerate(names):
-            for column, state in enumerate(columns):
-                if not any(each == state and found.definition.name == name for each, found in tested):
-                    panels[row, column].set_axis_off()
+        for axes in empty:
+            axes.set_axis_off()
         for axes in panels[:, 0]:
             axes.set_ylabel("error / µm")
         for axes in panels[-1]:
@@ -46,9 +49,7 @@ def draw_lengths(states: list[StateResult], folder: Path) -> None:
             for axes in panels.flat
             for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
         }
-        figure.legend(
-            entries.values(), entries.keys(), loc="outside upper center", ncols=min(len(entries), 3 * len(columns))
-        )
+        figure.legend(entries.values(), entries.keys(), loc="outside upper center", ncols=min(len(entries), 3 * across))
         save_picture(figure, folder, "lengths")
 
 

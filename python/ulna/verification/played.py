@@ -31,7 +31,7 @@ REACHED = 0.8
 #: half the width of a gauge's faces
 FACE_MM = 4.0
 #: places tried at once, and how often
-PLACES, ROUNDS = 24, 60
+PLACES, ROUNDS = 6, 300
 #: shares of the reach at which the seats of a single-point test stand: lowest, highest
 SEAT_SHARES = {"near": (0.1, 0.2), "middle": (0.45, 0.55), "far": (0.8, 0.9)}
 #: examples, of no maker
@@ -96,7 +96,6 @@ def play(
             progress("playing", done, len(steps))
     errors = ReadingErrors(np.full(truth.n, encoder_rad), touch_mm)
     filled = Filled(
-        arm=truth.name,
         range_mm=range_mm,
         artefacts=artefacts,
         mpe=MPE,
@@ -157,7 +156,7 @@ class _Player:
             poses = self.mover.anywhere(PLACES, self.rng)
             return np.asarray(self._tips(poses) - local_mm[0] @ axes)
         low, high = SEAT_SHARES.get(step.position, (0.1, 0.9))
-        tips = self._tips(self.mover.anywhere(200 * PLACES, self.rng))
+        tips = self._tips(self.mover.anywhere(800 * PLACES, self.rng))
         share = np.linalg.norm(tips, axis=1) / self.reach_mm
         away = np.maximum(low - share, share - high)
         return np.asarray(tips[np.argsort(np.maximum(away, 0.0), kind="stable")[:PLACES]])

@@ -51,7 +51,7 @@ class Verification:
         named = self.plan.file.arm
         if named is not None:
             return named
-        return "not named" if self.plan.arm is None else self.plan.arm.arm.name
+        return self.plan.arms[0].arm.name if self.plan.arms else "not named"
 
     def as_dict(self) -> dict[str, Any]:
         """`verification.json`: JSON types only, lengths in mm."""
@@ -83,7 +83,7 @@ class Verification:
                 "program": "ulna",
                 "version": ulna.__version__,
                 "plan": {"path": str(plan.path), "sha256": plan.sha256},
-                "arm_file": None if plan.arm is None else {"path": str(plan.arm.path), "sha256": plan.arm.sha256},
+                "arms": [{"path": str(each.path), "sha256": each.sha256} for each in plan.arms],
                 "files": [
                     {
                         "state": state,

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.errors import UlnaInputError
 from ulna.model import Arm
 
 F64 = NDArray[np.float64]
@@ -24,6 +25,19 @@ STEPS = 12
 SURVEYED = 500_000
 #: cells along the reach to each side
 CELLS = 20
+
+
+def travel_or_limits(arm: Arm, travel_rad: F64 | None, label: str) -> F64:
+    """(n, 2) how far the joints turn: as stated, else the arm's limits. Raises UlnaInputError without either."""
+    if travel_rad is not None:
+        return np.array(travel_rad, dtype=np.float64)
+    for k, joint in enumerate(arm.joints, start=1):
+        if joint.limits_rad is None:
+            raise UlnaInputError(
+                f"{label}: joint {k} of arm '{arm.name}' has no limits; expected how far each joint turns, for a "
+                f"posture that the arm cannot take is of no use. Add limits to the arm file, or [travel] to {label}."
+            )
+    return np.array([joint.limits_rad for joint in arm.joints], dtype=np.float64)
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -16,6 +15,7 @@ from ulna.errors import UlnaInputError
 from ulna.files.arm import arm_toml
 from ulna.model import Arm
 from ulna.study import Study
+from ulna.work.kept import Arrays, each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
 
@@ -61,18 +61,11 @@ def recalibrations(
             "State it."
         )
     pieces = [(first, min(piece_runs, runs - first)) for first in range(0, runs, piece_runs)]
-    found: dict[int, dict[str, NDArray[Any]]] = {}
-    if ledger is not None:
-        kept = ((number, ledger.kept(number)) for number in range(len(pieces)))
-        found = {number: arrays for number, arrays in kept if arrays is not None}
-    missing = [number for number in range(len(pieces)) if number not in found]
     told = progress if progress is not None else lambda *_: None
-    told("calibrations", sum(pieces[number][1] for number in found), runs)
-    work = partial(_piece, study, truth, seed)
-    for number, arrays in (workers or Threads()).each(work, [pieces[number] for number in missing]):
-        found[missing[number]] = arrays
-        if ledger is not None:
-            ledger.keep(missing[number], arrays)
+    told("calibrations", 0, runs)
+    found: dict[int, Arrays] = {}
+    for number, arrays in each_once(workers or Threads(), partial(_piece, study, truth, seed), pieces, ledger):
+        found[number] = arrays
         told("calibrations", sum(pieces[number][1] for number in found), runs)
     in_order = [found[number] for number in range(len(pieces))]
     parameters, u, converged = (
@@ -83,26 +76,29 @@ def recalibrations(
 
 def job_of(study: Study, truth: Arm, runs: int, seed: int, piece_runs: int = PIECE_RUNS) -> dict[str, Any]:
     """What a ledger must know of such a job: everything that its numbers depend on."""
-    digest = hashlib.sha256()
-    for arm in (study.arm, truth):
-        digest.update(arm_toml(arm).encode())
-    digest.update(repr((study.noise, study.fit)).encode())
+    parts: list[str | NDArray[Any] | None] = [arm_toml(arm) for arm in (study.arm, truth)]
+    parts.append(repr((study.noise, study.fit)))
     for group in study.readings:
-        digest.update(repr((group.artefact, group.placement.tolist())).encode())
-        for values in (group.q_rad, group.p_rad, group.length_mm, group.probe, group.feature, group.temperature_c):
-            digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
-    content = {"runs": runs, "seed": seed, "piece_runs": piece_runs, "study_sha256": digest.hexdigest()}
+        parts.append(repr((group.artefact, group.placement.tolist())))
+        parts += [group.q_rad, group.p_rad, group.length_mm, group.probe, group.feature, group.temperature_c]
+    content = {"runs": runs, "seed": seed, "piece_runs": piece_runs, "study_sha256": sha256_of(*parts)}
     return {"job": "recalibrations", **content}
 
 
 def recalibrated(
-    study: Study, truth: Arm, seed: int, pieces: Sequence[tuple[int, int]], workers: Workers
-) -> dict[int, dict[str, NDArray[Any]]]:
-    """Number of the piece → parameters, u and converged of its runs (first, count)."""
-    return dict(workers.each(partial(_piece, study, truth, seed), pieces))
+    study: Study, truth: Arm, seed: int, first: int, count: int, workers: Workers, ledger: Ledger | None = None
+) -> Arrays:
+    """parameters, u and converged of runs first … first + count - 1, which a job of any length has in common.
+
+    first is a multiple of PIECE_RUNS. With a ledger, of `job_of` this study, finished pieces are kept.
+    """
+    pieces = [(k, min(PIECE_RUNS, first + count - k)) for k in range(first, first + count, PIECE_RUNS)]
+    numbers = [k // PIECE_RUNS for k, _ in pieces]
+    found = dict(each_once(workers, partial(_piece, study, truth, seed), pieces, ledger, numbers))
+    return {name: np.concatenate([found[k][name] for k in range(len(pieces))]) for name in found[0]}
 
 
-def _piece(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> dict[str, NDArray[Any]]:
+def _piece(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> Arrays:
     """One piece: runs (first, count)."""
     from ulna import _core
 

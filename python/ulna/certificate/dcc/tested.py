@@ -24,7 +24,7 @@ def tests_result(
     method = sheet.dcc(sheet.dcc(element, "usedMethods"), "usedMethod")
     sheet.text(method, "name", sheet.own("test-method", manner=tests.manner))
     sheet.text(method, "description", sheet.own("test-method-text"))
-    sheet.dcc(method, "reference", f"evaluated in the manner of {tests.manner}")
+    sheet.dcc(method, "reference", f"evaluated in the manner of {tests.manner.strip()}".strip())
     software(sheet, sheet.dcc(element, "usedSoftware"), tests.version)
     status = _STATUS[tests.state]
     conditions = laboratory_conditions(of_laboratory, element, file, status)

@@ -3,11 +3,11 @@
 (function () {
   var light = {
     main: "#0072b2", faint: "#a9cfe6", outlier: "#d55e00", second: "#009e73", ink: "#1b1f24", grid: "#e3e7ec", axis: "#8a939e",
-    paper: "#ffffff"
+    paper: "#ffffff", band: "rgba(230,159,0,0.28)"
   };
   var dark = {
     main: "#56b4e9", faint: "#2b5875", outlier: "#ee7733", second: "#2fc39a", ink: "#e7eaee", grid: "#2e353d", axis: "#77818d",
-    paper: "#14171b"
+    paper: "#14171b", band: "rgba(230,159,0,0.30)"
   };
   var NARROW = 480;
   var root = document.documentElement;

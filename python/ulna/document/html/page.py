@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib import resources
 
 from ulna.document.content import Content
-from ulna.document.html import laboratory, summary, tables
+from ulna.document.html import laboratory, summary, tables, verification
 from ulna.document.html.markup import (
     json_in_script,
     paragraph,
@@ -75,7 +75,7 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         )
 
     def grid(figures: Sequence[str]) -> str:
-        return f'<div class="grid">\n{"".join(figures)}</div>\n'
+        return f'<div class="grid">\n{"".join(figures)}</div>\n' if figures else ""
 
     def lacks(*keys: str) -> str:
         return "".join(paragraph(words.say(content.missing[key]), "missing") for key in keys if key in content.missing)
@@ -119,9 +119,17 @@ def _sections(content: Content, words: Words, labels: Words, plots: list[Plot]) 
         + lacks("observability"),
         "lengths": (figure(length_plot(content.lengths, words, labels)) if content.lengths is not None else "")
         + lacks("study", "lengths", "verification"),
+        "verification": verification.verification(content, words)
+        + grid(
+            [
+                figure(verification.tested_lengths_plot(number, each, words, labels))
+                for number, each in enumerate(content.verification.lengths if content.verification else [])
+            ]
+        )
+        + verification.details(content, words),
         "artefacts": tables.artefact_table(content, words) + lacks("study"),
         "environment": laboratory.conditions(content, words) + _environment(content, words),
-        "decision": paragraph(words("decision.none")),
+        "decision": verification.decision(content, words),
         "traceability": laboratory.traceability(content, words) + lacks("laboratory"),
         "outliers": tables.outlier_table(content, words),
         "placements": tables.placement_table(content, words),
@@ -160,7 +168,8 @@ def _environment(content: Content, words: Words) -> str:
         said.append((words("environment.seat", seat=f"{found.seat_mm:g}"), ""))
     if not found.encoder_rad and found.seat_mm is None:
         said.append((words("environment.no-noise"), "missing"))
-    said.append((words("environment.else"), "note"))
+    if content.laboratory is None or content.laboratory.file.environment.humidity is None:
+        said.append((words("environment.else"), "note"))
     return "".join(paragraph(each, kind) for each, kind in said)
 
 

@@ -61,7 +61,7 @@ def singular_plot(found: Observability, page: Words, words: Words) -> Plot:
     decades = math.log10(float(seen[0] / seen[-1]))
     # ticks within decades where there are few of them, else some of the decades
     step: str | int = "D2" if decades < 2.2 else math.ceil(decades / 8)
-    y = axis(words("axis.singular-value"), type="log", exponentformat="power", dtick=step)
+    y = axis(words("axis.singular-value"), type="log", dtick=step)
     shape = layout(axis(words("axis.index"), zeroline=False), y, bool(lost.any()))
     return Plot("singular", page("observability.note", equations=found.equations), data, shape)
 

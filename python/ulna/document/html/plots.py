@@ -48,6 +48,7 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
         "zerolinecolor": "@axis",
         "linecolor": "@axis",
         "automargin": True,
+        "exponentformat": "power",  # not 200f and 10k
         **more,
     }
 

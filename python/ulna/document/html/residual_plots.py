@@ -26,6 +26,8 @@ TAILS = 100
 ARROW = 0.08
 """Of the extent of all tips: how long the longest but a twentieth of the vectors are drawn."""
 
+_UNITS = {"joint": "°", "reach": "mm", "temperature": "°C"}
+
 
 def distribution_plots(samples: Sequence[Sample], page: Words, words: Words) -> list[Plot]:
     """Histogram and Q–Q plot of each sample."""
@@ -61,7 +63,9 @@ def _histogram(name: str, sample: Sample, caption: str, words: Words) -> Plot:
         density = np.exp(-0.5 * z**2) / (sample.sigma_mm * math.sqrt(2.0 * math.pi))
         normal = density * width[0] * len(sample.value_mm)
         data.append(line(words("legend.normal"), x, normal, INK, "dash"))
-    return Plot(name, caption, data, layout(axis(words("axis.error-mm")), axis(words("axis.count")), True))
+    return Plot(
+        name, caption, data, layout(axis(words("axis.error-mm")), axis(words("axis.count"), tickformat="d"), True)
+    )
 
 
 def _quantiles(name: str, sample: Sample, caption: str, page: Words, words: Words) -> Plot:
@@ -134,11 +138,11 @@ def _marks(
     """edge: where they stand, their own values being beyond the axis."""
     value = cloud.residual_mm[kept]
     hover = [
-        f"{reading_label(readings, int(k), words)}<br>{number(float(size_mm))} mm"
-        for k, size_mm in zip(cloud.reading[kept], value, strict=True)
+        f"{reading_label(readings, int(k), words)}<br>{number(float(x))} {_UNITS[cloud.over]}, {number(float(each))} mm"
+        for k, x, each in zip(cloud.reading[kept], cloud.x[kept], value, strict=True)
     ]
     height = value if edge is None else np.full(len(kept), edge)
-    return points(label, cloud.x[kept], height, colour, symbol, size, text=hover, hoverinfo="text+x")
+    return points(label, cloud.x[kept], height, colour, symbol, size, text=hover, hoverinfo="text")
 
 
 def reading_label(readings: ReadingRows, k: int, words: Words) -> str:
@@ -156,7 +160,7 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
     x = found.first + 1 + 0.5 * (found.step - 1)
     one = found.step == 1
     count = len(readings.size_mm)
-    said = page("shown.all", count=count) if one else page("shown.runs", step=found.step, count=count)
+    said = page("shown.bars", count=count) if one else page("shown.runs", step=found.step, count=count)
     labels = [reading_label(readings, int(k), words) for k in found.first]
     colour = [OUTLIER if far else MAIN for far in found.outlier]
 
@@ -183,7 +187,11 @@ def pose_plot(readings: ReadingRows, page: Words, words: Words) -> Plot:
     if found.outlier.any():
         data.append(points(words("legend.outliers"), x[found.outlier], found.largest[found.outlier], OUTLIER, "x", 9))
     shape = layout(
-        axis(words("axis.reading"), zeroline=False), axis(words("axis.size-mm")), True, barmode="overlay", bargap=0.1
+        axis(words("axis.reading"), zeroline=False, tickformat="d"),
+        axis(words("axis.size-mm")),
+        True,
+        barmode="overlay",
+        bargap=0.1,
     )
     return Plot("poses", said, data, shape, 340)
 

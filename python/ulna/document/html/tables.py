@@ -13,6 +13,7 @@ from ulna.document.html.markup import name, number, paragraph, table, text
 from ulna.document.languages import Words
 from ulna.figures import NAMES, PlacementFigures
 from ulna.report.digits import decimals, figure_mm, fixed, quantity, uncertainty
+from ulna.report.figures import without_repeats
 from ulna.report.identification import combination, sentence
 
 MOST_OUTLIERS = 2000
@@ -48,10 +49,13 @@ def parameter_tables(content: Content, words: Words) -> str:
 
 def _parameter(row: ParameterRow, words: Words) -> list[str]:
     ratio = "–" if row.ratio is None else text(number(row.ratio))
+    status: str = words(f"status.{row.status}")
+    if row.cause is not None and words.has(f"cause.{row.cause}"):
+        status += f" <small>({words(f'cause.{row.cause}')})</small>"
     return [
         name(row.name),
         text(row.unit),
-        words(f"status.{row.status}"),
+        status,
         text(quantity(row.nominal, row.u, row.unit)),
         text(quantity(row.estimate, row.u, row.unit)),
         text(uncertainty(row.u)),
@@ -80,7 +84,9 @@ def _cylindrical(content: Content, words: Words) -> str:
 def determined(content: Content, words: Words) -> str:
     """Directions that are lost or weak, with cause and remedy."""
     found = content.identification
-    page = paragraph(words("determined.all")) if not found.lost else ""
+    page = ""
+    if not found.lost:
+        page = paragraph(words("determined.with-priors" if found.from_prior else "determined.all"))
     for title, directions in (("determined.lost", found.lost), ("determined.weak", found.weak)):
         if directions:
             page += f"<h3>{words(title)}</h3>\n" + _directions(directions, words(title), words)
@@ -176,7 +182,7 @@ def placement_table(content: Content, words: Words) -> str:
     """The figures of each placement; of very many those with the largest errors."""
     entries = content.placements
     columns = [key for key in NAMES if any(key in entry.figures for entry in entries)]
-    columns = [key for key in columns if "_rms_" not in key]
+    columns = without_repeats(entries, [key for key in columns if "_rms_" not in key])
     kept: Sequence[PlacementFigures] = entries
     if len(entries) > MOST_PLACEMENTS:
         size = [max((abs(value) for value in entry.figures.values()), default=0.0) for entry in entries]

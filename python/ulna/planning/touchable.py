@@ -1,0 +1,71 @@
+"""What is touched in one measurement: the features of an artefact, or places spread over a surface. Lengths mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.model import Arm
+from ulna.plan_spec import PlanSpec
+from ulna.simulation import Touching
+from ulna.study import SURFACES
+from ulna.virtual.places import Standing
+from ulna.virtual.touches import touches_of
+
+F64 = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Touchable:
+    """K places, each touched t times in a measurement."""
+
+    at_mm: F64
+    """(K, 3) of the tip, in the artefact's own frame."""
+    names: tuple[str, ...]
+    """(K,) of features; numbers of a surface's places."""
+    touches: int
+    """t; 1 on a surface."""
+    outward: F64 | None = None
+    """(K, 3) away from a surface, in the artefact's own frame; None for features."""
+    unknowns: F64 | None = None
+    """(K, 3) what moves a surface's residuals beside the arm: its centre, or its plane."""
+
+    @property
+    def pairs(self) -> bool:
+        """Whether two places are touched once each, as of a bar: then all pairs of postures are candidates."""
+        return len(self.at_mm) == 2 and self.touches == 1
+
+    def standing(self, spec: PlanSpec) -> Standing:
+        """Somewhere in the plan's room."""
+        name = f"{spec.label}: artefact '{spec.artefact.name}'"
+        return Standing(self.at_mm, name, spec.artefact.frame == "arm", spec.room_mm)
+
+
+def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
+    """Of the plan's artefact."""
+    artefact = spec.artefact
+    if artefact.kind not in SURFACES:
+        at_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
+        return Touchable(at_mm, tuple(artefact.features), spec.touches)
+    spread = touches_of(Touching(artefact, 1, spec.touches), artefact, arm, [probe])
+    at_mm, outward = spread.centre_mm, spread.off
+    unknowns = outward
+    if artefact.kind == "plane":
+        unknowns = np.column_stack([np.ones(len(at_mm)), at_mm[:, :2] / np.abs(at_mm[:, :2]).max()])
+    names = tuple(str(number + 1) for number in range(len(at_mm)))
+    return Touchable(at_mm, names, 1, outward, unknowns)
+
+
+def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
+    """(K, 3) directions in the frame of (K, 3) places → (S, K, 3) where the places are (S, K, 3): the rotation that
+    takes them there (Kabsch's, by singular values)."""
+    middle = own - own.mean(axis=0)
+    there = placed_mm - placed_mm.mean(axis=1, keepdims=True)
+    left, _, right = np.linalg.svd(np.einsum("ki,skj->sij", middle, there))
+    sign = np.ones(left.shape[:2])
+    sign[:, 2] = np.sign(np.linalg.det(left @ right))
+    rotation = left @ (sign[:, :, None] * right)
+    found: F64 = directions @ rotation
+    return found
