@@ -15,8 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from ulna.document.content import Cloud, Lengths, Parameters, QualityRow, ReadingRows, Sample
+from ulna.document.content import Cloud, Lengths, Parameters, QualityRow, ReadingRows, Sample, TestedLengths
 from ulna.document.languages import Words
+from ulna.document.tested import limit_lines
 from ulna.document.thinning import shown, shown_ranks
 from ulna.reproduce.style import BLUE, GREEN, GREY, STYLE, VERMILION
 
@@ -29,6 +30,8 @@ MOST_POINTS = 600
 MOST_RANKS = 600
 TAILS = 50
 LONGEST_LABEL = 30
+#: verdict → shape and colour of its marks
+VERDICTS = {"pass": ("o", BLUE), "undecided": ("D", GREEN), "fail": ("X", VERMILION), None: ("o", GREY)}
 
 
 @contextmanager
@@ -219,3 +222,29 @@ def lengths(found: Lengths, words: Words) -> tuple[str, list[str]]:
     axes.set_xlabel(words("axis.length-mm"))
     axes.set_ylabel(words("axis.length-error-mm"))
     return _svg(figure), [words.say(part.said)] if part.step > 1 else []
+
+
+def tested_lengths(found: TestedLengths, words: Words) -> str:
+    """Length errors of an acceptance test, with ±MPE and the guard bands about them."""
+    figure, axes = _axes(WIDTH_MM, 62.0)
+    lines = limit_lines(found)
+    axes.axhline(0.0, color="0.6", linewidth=0.8)
+    if lines is not None:
+        x, limit, guard = lines
+        for side in (1.0, -1.0):
+            first = side > 0.0
+            if guard.any():
+                label = words("legend.guard") if first else None
+                band = (side * (limit - guard), side * (limit + guard))
+                axes.fill_between(x, *band, color=GREY, alpha=0.22, linewidth=0, label=label)
+            axes.plot(x, side * limit, "--", color="black", linewidth=1.0, label=words("legend.mpe") if first else None)
+        axes.set_xlim(x[0], x[-1])
+    for verdict, (marker, colour) in VERDICTS.items():
+        own = np.array([each == verdict for each in found.verdict], dtype=bool)
+        if own.any():
+            label = words(f"conformity.{verdict or 'none'}")
+            axes.plot(found.length_mm[own], found.error_mm[own], marker, color=colour, markersize=3.5, label=label)
+    axes.set_xlabel(words("axis.length-mm"))
+    axes.set_ylabel(words("axis.length-error-mm"))
+    figure.legend(loc="outside upper center", ncols=6, fontsize=7)
+    return _svg(figure)

@@ -8,7 +8,7 @@ from typing import Any
 
 from ulna.document.content import Content
 from ulna.document.languages import Words, dictionary
-from ulna.document.pdf import blocks, figures, head, results
+from ulna.document.pdf import blocks, figures, head, results, tested
 from ulna.document.pdf.blocks import Block
 from ulna.document.pdf.fonts import Chosen, choose
 from ulna.document.pdf.text import clean, name, words_for_paper
@@ -61,8 +61,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
     }
     after: list[Block] = [
         *results.uncertainty_statement(content, words),
-        blocks.heading(words("section.decision")),
-        blocks.paragraph(words("decision.none")),
+        *tested.decision(content, words),
         *results.artefacts(content, words),
         *results.outliers(content, words),
         *results.provenance(content, words),
@@ -76,7 +75,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     with figures.looks([family.regular for family in chosen.more]):
-        data["blocks"] += _figures(content, words)
+        data["blocks"] += [*tested.verification(content, words), *_figures(content, words)]
     data["blocks"] += after
     return data, chosen
 
@@ -89,8 +88,11 @@ def _page_label(words: Words) -> list[str]:
 
 
 def _captions_of(content: Content) -> list[str]:
-    """Names that captions hold."""
-    return [clean(sample.artefact) for sample in content.samples]
+    """What files say beside figures, which are drawn when the fonts are known."""
+    said = [sample.artefact for sample in content.samples]
+    if content.verification is not None:
+        said += _texts(content.verification.file.model_dump(mode="json"))
+    return [clean(each) for each in said]
 
 
 def _figures(content: Content, words: Words) -> list[Block]:

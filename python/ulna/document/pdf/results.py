@@ -231,6 +231,8 @@ def provenance(content: Content, words: Words) -> list[Block]:
     files = [(made.result, made.result_sha256, "–")]
     if content.laboratory is not None:
         files.append((content.laboratory.path.name, content.laboratory.sha256, "–"))
+    if content.verification is not None:
+        files.append((content.verification.name, content.verification.sha256, "–"))
     rows: list[list[Cell]] = [[name(path), blocks.code(digest), state] for path, digest, state in files]
     rows += [[name(file.path), blocks.code(file.sha256), words(f"state.{file.state}")] for file in made.files]
     heads = [words(f"column.{key}") for key in ("file", "sha256", "state")]
