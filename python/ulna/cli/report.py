@@ -19,11 +19,18 @@ def report(
     out: Annotated[
         Path,
         typer.Option(
-            "-o", "--out", metavar="PATH", help="File to write, or a folder for report.html.", show_default=False
+            "-o",
+            "--out",
+            metavar="PATH",
+            help="File to write, or a folder for report.html, report.pdf.",
+            show_default=False,
         ),
     ],
     as_html: Annotated[
         bool, typer.Option("--html", help="One HTML file; without another format this is meant.")
+    ] = False,
+    as_pdf: Annotated[
+        bool, typer.Option("--pdf", help="A calibration certificate on paper (PDF); what --lab names is on it.")
     ] = False,
     study: Annotated[
         Path | None,
@@ -45,6 +52,14 @@ def report(
         typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
     ] = None,
     language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
+    fonts: Annotated[
+        Path | None,
+        typer.Option(
+            "--fonts",
+            metavar="FOLDER",
+            help="Fonts for the PDF, such as Chinese ones, looked at before the machine's.",
+        ),
+    ] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
@@ -64,13 +79,13 @@ def report(
     from ulna.document.written import targets, write_report
 
     one_of("--language", language, LANGUAGES)
-    formats = ["html"] if as_html else []
+    formats = [name for name, asked in (("html", as_html), ("pdf", as_pdf)) if asked]
     wanted = targets(out, formats or ["html"], force)
     with output.progress_bar() as progress:
         content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
     files = [result / "result.json" if result.is_dir() else result]
     files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
-    write_report(content, wanted, language, files, force)
+    write_report(content, wanted, language, files, force, fonts)
     if as_json:
         output.print_json(
             {

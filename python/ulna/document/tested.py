@@ -5,11 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ulna.document.content import Said, TestedLengths, Verification
 from ulna.files.toml import read_bytes, sha256
 from ulna.files.verification import TestedTable, load_verification
 from ulna.result import Result
+
+F64 = NDArray[np.float64]
 
 LENGTHS = ("length", "volumetric")
 """Kinds of tests whose first figure is of length errors."""
@@ -65,3 +68,18 @@ def _lengths(state: str, test: TestedTable) -> TestedLengths:
         a_mm=None if terms is None else terms.a,
         b=None if terms is None else terms.b,
     )
+
+
+def limit_lines(found: TestedLengths) -> tuple[F64, F64, F64] | None:
+    """Lengths, the MPE there and the half width g of the guard band about it, each (M,) mm: what limits look like over
+    the length, going on a little beyond the shortest and the longest. None where no MPE is stated."""
+    if found.a_mm is None or not len(found.length_mm):
+        return None
+    low, high = float(found.length_mm.min()), float(found.length_mm.max())
+    margin = 0.04 * (high - low) or 0.05 * high
+    at, first = np.unique(found.length_mm.round(6), return_index=True)
+    x = np.concatenate([[max(low - margin, 0.0)], at, [high + margin]])
+    guard = np.nan_to_num(found.guard_mm[first])
+    guard = np.concatenate([guard[:1], guard, guard[-1:]])
+    limit = np.full(len(x), found.a_mm) if found.b is None else found.a_mm + x / found.b
+    return x, limit, guard

@@ -10,14 +10,20 @@ from ulna.errors import UlnaInputError
 from ulna.files.output import check_output, output_folder, refuse_inputs, write_file
 
 
-def _html(content: Content, language: str) -> bytes:
+def _html(content: Content, language: str, _: Path | None) -> bytes:
     from ulna.document.html.page import render
 
     return render(content, language).encode()
 
 
-FORMATS: dict[str, Callable[[Content, str], bytes]] = {"html": _html}
-"""Format → how a content becomes a file of it, in a language."""
+def _pdf(content: Content, language: str, fonts: Path | None) -> bytes:
+    from ulna.document.pdf.render import render
+
+    return render(content, language, fonts)
+
+
+FORMATS: dict[str, Callable[[Content, str, Path | None], bytes]] = {"html": _html, "pdf": _pdf}
+"""Format → how a content becomes a file of it, in a language, with the fonts of a folder."""
 
 
 def targets(out: Path, formats: Sequence[str], force: bool) -> dict[str, Path]:
@@ -40,11 +46,19 @@ def targets(out: Path, formats: Sequence[str], force: bool) -> dict[str, Path]:
 
 
 def write_report(
-    content: Content, wanted: Mapping[str, Path], language: str, inputs: Iterable[Path], force: bool
+    content: Content,
+    wanted: Mapping[str, Path],
+    language: str,
+    inputs: Iterable[Path],
+    force: bool,
+    fonts: Path | None = None,
 ) -> None:
-    """All formats or none. Raises UlnaInputError where a file would take the place of one that was read."""
+    """All formats or none. Raises UlnaInputError where a file would take the place of one that was read.
+
+    fonts: a folder with fonts for the PDF, looked at before those of the machine.
+    """
     refuse_inputs(wanted.values(), [*inputs, *(Path(file.path) for file in content.provenance.files)])
-    made = {path: FORMATS[each](content, language) for each, path in wanted.items()}
+    made = {path: FORMATS[each](content, language, fonts) for each, path in wanted.items()}
     if len(made) == 1:
         ((path, rendered),) = made.items()
         write_file(path, rendered, force)

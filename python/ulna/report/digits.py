@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from decimal import ROUND_HALF_EVEN, Context, Decimal
 
 _MOST_DECIMALS = {"mm": 6, "rad": 9}
 _PLAIN_DECIMALS = {"mm": 4, "rad": 6}
@@ -50,3 +51,26 @@ def small(value: float, digits: int) -> str:
     """3.1e-6, without the zero that printf puts into exponents."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa}e{int(exponent)}"
+
+
+def rounded(value: float, expanded: float | None, unit: str) -> tuple[str, str]:
+    """A value and its expanded uncertainty for a certificate: U with two significant digits, the value to the same
+    place (GUM 7.2.6), both to the nearest, halves to even; without U as `quantity` has it, and a dash.
+
+    Lengths and angles are plain decimals; 1/K and rad/(N m), and what is smaller than 1e-12, are in powers of ten.
+    Where U is 0 the value is as it was given.
+    """
+    if expanded is None or not math.isfinite(expanded):
+        return quantity(value, None, unit), "–"
+    if expanded == 0.0:
+        return f"{value:.12g}", "0"
+    exact = Decimal(repr(value))
+    shown = Decimal(f"{expanded:.1e}")  # to two digits first: 0.0996 is 0.10, and its last place is the hundredth
+    place = shown.adjusted() - 1
+    nearest = exact.quantize(Decimal(1).scaleb(place), ROUND_HALF_EVEN, Context(prec=60))
+    if unit in _MOST_DECIMALS and place >= -12:
+        text = f"{nearest:f}"
+        return (text.removeprefix("-") if nearest == 0 else text), f"{shown:f}"
+    if nearest == 0:
+        return "0", small(expanded, 2)
+    return small(float(nearest), max(nearest.adjusted() - place, 0) + 1), small(expanded, 2)

@@ -8,6 +8,7 @@ from ulna.document.content import Content, TestedLengths, Verification
 from ulna.document.html.markup import name, paragraph, table, text
 from ulna.document.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, line, points
 from ulna.document.languages import Words
+from ulna.document.tested import limit_lines
 from ulna.files.verification import FigureTable, TestedTable
 from ulna.report.digits import figure_mm, uncertainty
 
@@ -144,16 +145,10 @@ def tested_lengths_plot(number: int, found: TestedLengths, page: Words, words: W
 
 
 def _limits(found: TestedLengths, words: Words) -> list[dict[str, object]]:
-    if found.a_mm is None or not len(found.length_mm):
+    lines = limit_lines(found)
+    if lines is None:
         return []
-    low, high = float(found.length_mm.min()), float(found.length_mm.max())
-    margin = 0.04 * (high - low) or 0.05 * high
-    at, first = np.unique(found.length_mm.round(6), return_index=True)
-    # of each length its guard band; beyond the shortest and the longest it goes on
-    x = np.concatenate([[max(low - margin, 0.0)], at, [high + margin]])
-    guard = np.nan_to_num(found.guard_mm[first])
-    guard = np.concatenate([guard[:1], guard, guard[-1:]])
-    limit = np.full(len(x), found.a_mm) if found.b is None else found.a_mm + x / found.b
+    x, limit, guard = lines
     data: list[dict[str, object]] = []
     for side in (1.0, -1.0):
         shown = {"showlegend": side > 0.0}
