@@ -17,8 +17,8 @@ from ulna.uncertainty.assess import assess
 from ulna.uncertainty.constrained import Constrained
 from ulna.uncertainty.known import known_of_performance
 from ulna.uncertainty.measurands import Touched
+from ulna.uncertainty.simulated_tests import SetUp, set_up
 from ulna.uncertainty.task import Task
-from ulna.uncertainty.tests_of_arms import SetUp, set_up
 from ulna.virtual.postures import Mover
 from ulna.work.pieces import Threads
 

@@ -333,9 +333,9 @@ def test_touches_on_a_line_say_no_plane(calibrated) -> None:
     line = np.array([400.0, 200.0, 300.0]) + np.outer(np.linspace(0, 100, 5), [1.0, 0.0, 0.0])
     q_rad = truth.touch(line, 3, rng)
     with pytest.raises(UlnaInputError, match="hardly say what is asked, a plane"):
-        first_order(arm, task_of("plane", [0] * 5, np.repeat(q_rad[:1], 5, axis=0) + 1e-9 * rng.random((5, 7))))
-    found = first_order(arm, task_of("plane", [0] * 5, q_rad))
-    assert np.sqrt(found.covariance.diagonal()[:3].max()) > 0.1  # about the line it may turn
+        first_order(arm, task_of("plane", [0] * 5, q_rad))  # about the line it may turn as it likes
+    with pytest.raises(UlnaInputError, match="hardly say|on a line"):
+        first_order(arm, task_of("plane", [0] * 5, np.repeat(q_rad[:1], 5, axis=0)))
 
 
 def test_wrong_tasks(result: Path, tmp_path: Path) -> None:

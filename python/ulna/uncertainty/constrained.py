@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ulna.errors import UlnaInputError, nearest
 from ulna.model import Arm
 from ulna.performance import Figure, Performance
-from ulna.uncertainty.tests_of_arms import SetUp, set_up
+from ulna.uncertainty.simulated_tests import SetUp, set_up
 from ulna.virtual.postures import Mover
 from ulna.work.pieces import Threads, Workers
 
