@@ -59,9 +59,8 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
             *results.quality(content, words),
         ],
     }
+    uncertainty = [*tested.decision(content, words), *results.uncertainty_statement(content, words)]
     after: list[Block] = [
-        *results.uncertainty_statement(content, words),
-        *tested.decision(content, words),
         *results.artefacts(content, words),
         *results.outliers(content, words),
         *results.provenance(content, words),
@@ -71,12 +70,13 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
         {"kind": "signatures", "people": head.people(content)},
     ]
     # labels of figures are words of the dictionary: all of them, so that fonts are known before they are drawn
-    chosen = choose([*_texts(data), *_texts(after), *dictionary(language).values(), *_captions_of(content)], fonts)
+    said = [*_texts(data), *_texts(uncertainty), *_texts(after), *dictionary(language).values(), *_captions_of(content)]
+    chosen = choose(said, fonts)
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     with figures.looks([family.regular for family in chosen.more]):
-        data["blocks"] += [*tested.verification(content, words), *_figures(content, words)]
-    data["blocks"] += after
+        data["blocks"] += [*_before_after(content, words), *tested.verification(content, words), *uncertainty]
+        data["blocks"] += [*_figures(content, words), *after]
     return data, chosen
 
 
@@ -95,13 +95,13 @@ def _captions_of(content: Content) -> list[str]:
     return [clean(each) for each in said]
 
 
-def _figures(content: Content, words: Words) -> list[Block]:
-    page: list[Block] = []
+def _before_after(content: Content, words: Words) -> list[Block]:
     pair = figures.before_after(content.quality, words)
-    if pair is not None:
-        page.append(blocks.figures([blocks.figure(pair, words("paper.before-after"))], 1))
-    page += _distributions(content, words)
-    page += _clouds(content, words)
+    return [] if pair is None else [blocks.figures([blocks.figure(pair, words("paper.before-after"))], 1)]
+
+
+def _figures(content: Content, words: Words) -> list[Block]:
+    page = [*_distributions(content, words), *_clouds(content, words)]
     ratio = figures.ratios(content.parameters, words)
     if ratio is not None:
         page.append(blocks.heading(words("paper.moved")))
