@@ -11,6 +11,7 @@ from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.acceptance import write_plan
 from tests.cli_runs import assert_bad_input, run, write_lengths
 from tests.pdf_reading import Pdf, squeezed
 from tests.reports import calibrated, seats_study
@@ -202,6 +203,26 @@ def test_outliers_are_listed_and_held_parameters_have_no_uncertainty(seats):
     holds(pdf, "960 more are in the result")
     heads = [page for page in pdf.texts if squeezed("times the scatter") in squeezed(page) and "touches.csv" in page]
     assert len(heads) >= 2, "the head of a table stands on each of its pages"
+
+
+def test_an_acceptance_test_is_there_with_its_decision(lengths, tmp_path):
+    write_plan(tmp_path)
+    done = run("verify", tmp_path / "plan.toml", "-o", tmp_path / "tested")
+    assert done.returncode in (0, 1), done.stderr
+    content = gather(lengths, verified=tmp_path / "tested" / "verification.json")
+    pdf = Pdf(render(content))
+    found = content.verification
+    assert found is not None
+    figures = [figure for state in found.file.states for test in state.tests for figure in test.figures]
+    assert len(figures) >= 4
+    for figure in figures:
+        value, expanded = rounded(figure.value, figure.expanded, "mm")
+        verdict = dictionary("en")[f"conformity.{figure.verdict}"]
+        text = re.escape(squeezed(figure.name)) + r"\w*" + verdict + re.escape(value + expanded)
+        assert re.search(text, all_text(pdf)), figure.name
+        holds(pdf, figure.formula)
+    holds(pdf, "in the manner of", "On the whole:", "Dashed: ± maximum permissible error", found.sha256)
+    assert squeezed("No statement of conformity") not in all_text(pdf)
 
 
 # text from files

@@ -1,6 +1,7 @@
-"""Pictures of the printed certificate: `python tools/docs_certificate_picture.py`. Typst draws them, as it sets the PDF.
+"""Pictures of the printed certificate, drawn by Typst as it sets the PDF: `python tools/docs_certificate_picture.py`.
 
-They show no more than the looks, and the pages are linked to as PDF, so this is run by hand where the looks have changed.
+They show no more than the looks, and the pages are linked to as PDF, so this is run by hand where the looks have
+changed.
 """
 
 import io
