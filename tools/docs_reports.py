@@ -1,6 +1,5 @@
 """The reports that the documentation links to, made while it is built: a hook of MkDocs. They are not committed."""
 
-import dataclasses
 import sys
 from pathlib import Path
 from typing import Any
@@ -8,7 +7,6 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from docs_running import reader_folder, ulna
-from ulna import Arm, Probe
 
 #: the experiment of Cheng, Yu and Fei (2011) on the virtual arm of their Table 4: 101 bars fitted, fresh bars held out,
 #: and an acceptance test, measured by the true arm and evaluated with the calibrated one
@@ -18,7 +16,7 @@ PLAN = [
     "iso-10360-12",
     "examples/platinum/platinum.toml",
     "--play",
-    "truth.toml",
+    "examples/platinum/truth.toml",
     "-o",
     "test",
 ]
@@ -33,18 +31,9 @@ REPORT += ["--verification", "out/test/verification.json", "--lab", "examples/pl
 LANGUAGES = ("en", "de")
 
 
-def write_truth(folder: Path) -> None:
-    """`truth.toml`: the arm that the example's readings come from, with the bent probe of Table 4."""
-    nominal = Arm.load(folder / "examples" / "platinum" / "platinum.toml")
-    true = Arm.load(folder / "examples" / "platinum" / "platinum-straight.toml")
-    bent = Probe.from_cylindrical(0.431148, 39.4321, 223.8773, nominal.probes["bent"].ball_mm)
-    dataclasses.replace(true, probes={"bent": bent}).save(folder / "truth.toml")
-
-
 def cheng2011_reports() -> dict[str, bytes]:
     """Name → page (HTML and PDF), for each language that the example's laboratory file knows. Raises RuntimeError."""
     with reader_folder() as folder:
-        write_truth(folder)
         names = {language: f"cheng2011-{language}.html" for language in LANGUAGES}
         written = [[*REPORT, "--language", each, "-o", name] for each, name in names.items()]
         papers = [f"cheng2011-{language}.pdf" for language in LANGUAGES]
