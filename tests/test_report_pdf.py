@@ -26,6 +26,7 @@ from ulna.document.pdf.render import certificate, render
 from ulna.document.pdf.text import clean, name
 from ulna.document.pdf.typeset import pictures, typeset
 from ulna.errors import UlnaInputError
+from ulna.extras import JudgedExtra
 from ulna.report.digits import rounded
 
 #: the languages of Typst, HTML and TeX, and words that are too long for any line
@@ -192,6 +193,23 @@ def test_what_a_laboratory_file_leaves_out_is_said(lengths, lab, tmp_path):
     holds(pdf, "DIE METROLOGISCHE RÜCKFÜHRUNG IST NICHT ANGEGEBEN", "nennt keine Normale", "Verfahren nicht angegeben")
     holds(pdf, "Beispiellabor für Längen", "Kalibrierschein", f"Seite 1 von {len(pdf.pages)}")
     assert squeezed("Ausgestellt") not in squeezed(pdf.texts[0])
+
+
+def test_a_fit_that_did_not_converge_says_so_first(lengths, lab):
+    content = gather(lengths, laboratory=lab)
+    fit = dataclasses.replace(content.fit, converged=False, termination="max-iterations")
+    first = squeezed(Pdf(render(dataclasses.replace(content, fit=fit))).texts[0])
+    assert first.index(squeezed("The fit did NOT converge")) < first.index("SampleWorks")
+
+
+def test_without_degrees_of_freedom_there_is_no_uncertainty_and_blocks_are_judged(lengths):
+    content = gather(lengths)
+    rows = [dataclasses.replace(row, expanded=None, u=None, ratio=None) for row in content.parameters.rows]
+    known = dataclasses.replace(content.parameters, rows=rows, k=float("nan"), degrees_of_freedom=0.0)
+    block = JudgedExtra("encoder-harmonics", "length_error_mean_mm", 0.05, 0.03, 0.02, None, 1, "5", "earned", 2)
+    pdf = Pdf(render(dataclasses.replace(content, parameters=known, extras=[block])))
+    holds(pdf, "no uncertainty can be estimated", "encoder harmonics, order 2", "earned its place")
+    assert squeezed("coverage factor") not in all_text(pdf)
 
 
 def test_outliers_are_listed_and_held_parameters_have_no_uncertainty(seats):

@@ -8,7 +8,7 @@ import io
 
 from PIL import Image
 
-from docs_reports import STEPS, write_truth
+from docs_reports import STEPS
 from docs_running import ROOT, reader_folder, ulna
 from ulna.document.gather import gather
 from ulna.document.pdf.render import certificate
@@ -23,7 +23,6 @@ COLOURS = 32
 def pages() -> list[Image.Image]:
     """The pages of the certificate that the documentation links to. Raises RuntimeError."""
     with reader_folder() as folder:
-        write_truth(folder)
         for arguments in STEPS:
             done = ulna(arguments, folder)
             if done.returncode != 0:

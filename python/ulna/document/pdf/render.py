@@ -56,6 +56,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
             *results.ending(content, words),
             *results.parameters(content, words),
             *results.determined(content, words),
+            *results.extras(content, words),
             *results.quality(content, words),
         ],
     }
