@@ -128,8 +128,8 @@ def _distributions(content: Content, words: Words) -> list[Block]:
         return []
     return [
         blocks.heading(words("section.distribution")),
+        blocks.paragraph(words("distribution.note"), "lead"),
         blocks.figures(found, 2),
-        blocks.paragraph(words("distribution.note"), "note"),
     ]
 
 
@@ -138,7 +138,7 @@ def _clouds(content: Content, words: Words) -> list[Block]:
     for each in content.clouds:
         if each.over == "joint":
             svg, said = figures.cloud(each, content.readings, words)
-            over_joints.append(blocks.figure(svg, " ".join([f"{words('joint.number', joint=each.joint)}.", *said])))
+            over_joints.append(blocks.figure(svg, " ".join([f"{words('joint.number', joint=each.joint)}:", *said])))
     page = [blocks.heading(words("section.joints"))]
     if over_joints:
         legend = words("paper.cloud-legend")
