@@ -51,7 +51,7 @@ if __name__ == "__main__":
         folder = Path(name)
         (folder / "short.toml").write_text(SHORT, encoding="utf-8")
         plan = play_test_plan("short.toml", TRUTH, seed=8, beside=folder)
-        text = plan.text.replace("range =", "ball = 6.0\nrange =")
+        text = plan.text(folder).replace("\nrange =", "\nball = 6.0\nrange =")
         (folder / "plan.toml").write_text(text + FOUND, encoding="utf-8")
         coordinates(plan.table, TRUTH).write_csv(folder / "touches.csv")
         coordinates(plan.table, slipped(TRUTH, 1e-4)).write_csv(folder / "as-found.csv")

@@ -1,6 +1,6 @@
 """Fits against independent solvers (SciPy), closed forms and the laws of rigid motion and scale.
 
-NIST's reference fits (Shakarji 1998) are in no package of the public registries, so SciPy's trust-region least squares
+NIST's reference data (Shakarji 1998) come with no package that could be found, so SciPy's trust-region least squares
 from the true start is the oracle.
 """
 

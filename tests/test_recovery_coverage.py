@@ -83,6 +83,25 @@ def test_intervals_from_noise_drawn_by_the_core(kind):
     assert abs(scatter - 1).max() < 4.5 / np.sqrt(2 * runs)
 
 
+def test_a_bar_touched_once_at_each_end_is_calibrated_by_its_lengths():
+    """In Monte Carlo the bar becomes its length rows, but for rounding; what each run states, and how they scatter, is
+    what the fit with placements says."""
+    truth = table_4()
+    bar, rows = exact_bars(truth, 101)
+    placed = core_problem(truth, [bar], STATED)
+    runs = 400
+    found = _core.recalibrate(placed, nothing_held(truth), core_arm(truth), runs, seed=1, threads=2)
+    lengths = _core.recalibrate(
+        core_problem(truth, [rows], STATED), nothing_held(truth), core_arm(truth), runs, seed=1, threads=2
+    )
+    for own, other in zip(found, lengths, strict=True):
+        np.testing.assert_allclose(own, other, rtol=1e-9)
+    stated = np.sqrt(np.diag(_core.fit(placed, nothing_held(truth)).covariance))[DETERMINED]
+    np.testing.assert_allclose(np.sqrt((found[1][:, DETERMINED] ** 2).mean(axis=0)), stated, rtol=2e-3)
+    scatter = found[0][:, DETERMINED].std(axis=0) / stated
+    assert abs(scatter - 1).max() < 4.5 / np.sqrt(2 * runs)
+
+
 def test_recalibrations_do_not_depend_on_threads():
     truth = table_4()
     problem = core_problem(truth, [exact_bars(truth, 60)[1]], STATED)

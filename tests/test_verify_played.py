@@ -59,15 +59,17 @@ def test_a_true_arm_without_noise_finds_the_true_artefacts(exact: Path, truth: A
     assert [text for test in found.states[0].tests for text in test.departures] == []
 
 
-def test_encoders_and_coordinates_say_the_same(exact: Path, truth: Arm, tmp_path: Path) -> None:
+def test_encoders_and_coordinates_say_the_same(exact: Path, truth: Arm) -> None:
+    beside = exact / "coordinates"
+    beside.mkdir()
     table = pl.read_csv(exact / "plan" / "touches.csv")
     angles = [f"q{k + 1}" for k in range(7)]
     p_mm = truth.tip(table.select(angles).to_numpy())
     table = table.drop(angles).with_columns(pl.Series(axis, p_mm[:, k]) for k, axis in enumerate("xyz"))
-    table.write_csv(tmp_path / "touches.csv")
+    table.write_csv(beside / "touches.csv")
     text = (exact / "plan" / "plan.toml").read_text(encoding="utf-8")
-    (tmp_path / "plan.toml").write_text(text.replace("range =", "ball = 6.0\nrange ="), encoding="utf-8")
-    ours, theirs = ulna.verify(exact / "plan" / "plan.toml", exact / "arm.toml"), ulna.verify(tmp_path / "plan.toml")
+    (beside / "plan.toml").write_text(text.replace("\nrange =", "\nball = 6.0\nrange ="), encoding="utf-8")
+    ours, theirs = ulna.verify(exact / "plan" / "plan.toml", exact / "arm.toml"), ulna.verify(beside / "plan.toml")
     for name, figure in ours.states[0].figures.items():
         other = theirs.states[0].figures[name]
         assert [each.single.value_mm for each in figure.values] == pytest.approx(
@@ -75,16 +77,18 @@ def test_encoders_and_coordinates_say_the_same(exact: Path, truth: Arm, tmp_path
         )
 
 
-def test_a_wrong_arm_fails_as_found_and_the_right_one_passes_as_left(exact: Path, truth: Arm, tmp_path: Path) -> None:
+def test_a_wrong_arm_fails_as_found_and_the_right_one_passes_as_left(exact: Path, truth: Arm) -> None:
     """The same readings through two arms: a zero offset is 0.2 mrad off in one."""
+    beside = exact / "states"
+    beside.mkdir()
     wrong = truth.parameters.copy()
     wrong[truth.parameter_names.index("joint.3.theta0")] += 2e-4
-    truth.with_parameters(wrong).save(tmp_path / "found.toml")
-    (tmp_path / "touches.csv").write_bytes((exact / "plan" / "touches.csv").read_bytes())
+    truth.with_parameters(wrong).save(beside / "found.toml")
+    (beside / "touches.csv").write_bytes((exact / "plan" / "touches.csv").read_bytes())
     text = (exact / "plan" / "plan.toml").read_text(encoding="utf-8")
     text += '\n[[readings]]\nfile = "touches.csv"\nstate = "as-found"\narm = "found.toml"\n'
-    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
-    done = run("verify", exact / "arm.toml", tmp_path / "plan.toml", "--json")
+    (beside / "plan.toml").write_text(text, encoding="utf-8")
+    done = run("verify", exact / "arm.toml", beside / "plan.toml", "--json")
     assert done.returncode == 1
     document = strict_json(done.stdout)
     assert [(state["state"], state["verdict"]) for state in document["states"]] == [
@@ -146,3 +150,34 @@ def test_a_played_plan_is_json_when_asked(truth: Arm, small: Path, tmp_path: Pat
     truth.save(tmp_path / "arm.toml")
     done = run("verify", "--make-plan", small, "--play", tmp_path / "arm.toml", "-o", tmp_path / "p", "--json")
     assert json.loads(done.stdout)["touches"]["articulation"] == 25
+    text = (tmp_path / "p" / "plan.toml").read_text(encoding="utf-8")
+    assert 'profile = "../' in text, "from where the plan stands, so that both may move"
+    assert run("verify", tmp_path / "arm.toml", tmp_path / "p" / "plan.toml").returncode == 0
+
+
+def test_seats_at_the_wrong_distance_are_told(truth: Arm, tmp_path: Path) -> None:
+    truth.save(tmp_path / "arm.toml")
+    play_test_plan("asme-b89-4-22", truth, seed=4).save(tmp_path)
+    (tmp_path / "own.toml").write_text(
+        'format = "ulna-profile/1"\nname = "own"\nbased_on = "asme-b89-4-22"\n[test.single-point]\n'
+        "shares = [[0.0, 0.2], [0.7, 0.75], [0.8, 1.2]]\n",
+        encoding="utf-8",
+    )
+    text = (tmp_path / "plan.toml").read_text(encoding="utf-8").replace('"asme-b89-4-22"', '"own.toml"')
+    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
+    told = ulna.verify(tmp_path / "plan.toml", tmp_path / "arm.toml").states[0].tests[1].departures
+    assert len(told) == 1
+    assert told[0].startswith("seat position middle: ")
+    assert told[0].endswith("the profile asks for 70 to 75 %.")
+
+
+def test_seats_in_any_frame_are_not_taken_for_checked(truth: Arm, tmp_path: Path) -> None:
+    made = play_test_plan("asme-b89-4-22", truth, seed=4)
+    angles = [f"q{k + 1}" for k in range(7)]
+    p_mm = truth.tip(made.table.select(angles).to_numpy())
+    table = made.table.drop(angles).with_columns(pl.Series(axis, p_mm[:, k]) for k, axis in enumerate("xyz"))
+    table.write_csv(tmp_path / "touches.csv")
+    text = made.text(tmp_path).replace("\nrange =", "\nball = 6.0\nrange =")
+    (tmp_path / "plan.toml").write_text(text, encoding="utf-8")
+    told = ulna.verify(tmp_path / "plan.toml").states[0].tests[1].departures
+    assert told == ["how far from the base the seats stood was not checked: coordinates may be in any frame."]

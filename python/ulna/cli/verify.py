@@ -140,8 +140,8 @@ def _make(
     made.save(out, force)
     counts = made.counts()
     if as_json:
-        output.print_json({"profile": made.profile, "out": str(out), "touches": counts, "files": list(FILES)})
+        output.print_json({"profile": made.profile.file.name, "out": str(out), "touches": counts, "files": list(FILES)})
     else:
         listed = ", ".join(f"{test} {count}" for test, count in counts.items())
-        print(f"Profile {made.profile}: {sum(counts.values())} touches ({listed}).")
+        print(f"Profile {made.profile.file.name}: {sum(counts.values())} touches ({listed}).")
     output.say(f"Written to {out}: {', '.join(FILES)}")

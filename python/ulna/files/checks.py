@@ -67,24 +67,30 @@ def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:
 def check_limits(group: Readings, arm: Arm, files: list[InputFile], remarks: list[str]) -> None:
     """Remark upon readings outside a joint's limits."""
     for letter, q_rad in (("q", group.q_rad), ("p", group.p_rad)):
-        for k, joint in enumerate(arm.joints if q_rad is not None else ()):
-            assert q_rad is not None
-            if joint.limits_rad is None:
-                continue
-            low, high = joint.limits_rad
-            column = q_rad[:, k]
-            outside = np.flatnonzero((column < low) | (column > high))
-            if not len(outside):
-                continue
-            for index in np.unique(group.file[outside]).tolist():
-                rows = outside[group.file[outside] == index]
-                worst = rows[np.argmax(np.maximum(low - column[rows], column[rows] - high))]
-                remarks.append(
-                    f"{files[index].path}: column '{letter}{k + 1}': {_count(len(rows), 'reading')} outside the "
-                    f"limits of joint {k + 1} ({low:g} to {high:g} rad): {_rows(group.row[rows])}; the farthest is "
-                    f"{column[worst]:.6g} rad in row {group.row[worst]}. Check the limits in the arm file, or the "
-                    "readings."
-                )
+        if q_rad is None:
+            continue
+        for index in np.unique(group.file).tolist():
+            own = group.file == index
+            remark_limits(q_rad[own], group.row[own], letter, arm, files[index].path, remarks)
+
+
+def remark_limits(q_rad: F64, row: I64, letter: str, arm: Arm, path: Path, remarks: list[str]) -> None:
+    """The same of (N, n) readings of one file, in the rows (N,) and the columns q1 … or p1 … of it."""
+    for k, joint in enumerate(arm.joints):
+        if joint.limits_rad is None:
+            continue
+        low, high = joint.limits_rad
+        column = q_rad[:, k]
+        rows = np.flatnonzero((column < low) | (column > high))
+        if not len(rows):
+            continue
+        worst = rows[np.argmax(np.maximum(low - column[rows], column[rows] - high))]
+        remarks.append(
+            f"{path}: column '{letter}{k + 1}': {_count(len(rows), 'reading')} outside the "
+            f"limits of joint {k + 1} ({low:g} to {high:g} rad): {_rows(row[rows])}; the farthest is "
+            f"{column[worst]:.6g} rad in row {row[worst]}. Check the limits in the arm file, or the "
+            "readings."
+        )
 
 
 def check_bar_ends(group: Readings, files: list[InputFile], study: Path) -> None:

@@ -11,7 +11,8 @@ from ulna.files.units import LengthUnit
 
 Count = Annotated[int, Field(ge=1, le=100_000)]
 Positive = Annotated[float, Field(gt=0)]
-Share = Annotated[float, Field(gt=0, le=10)]
+Share = Annotated[float, Field(ge=0, le=10)]
+Shares = list[Annotated[list[Share], Field(min_length=2, max_length=2)]]
 Rule = Literal["1.65u", "U", "simple"]
 
 
@@ -65,6 +66,8 @@ class SinglePointTest(Strict):
     """Touches of each."""
     figures: Annotated[list[Literal["asme", "faro"]], Field(min_length=1)]
     """Whose figures: ASME's deviations from the mean, FARO's half ranges of the coordinates."""
+    shares: Shares = Field(default_factory=list)
+    """Of the reach, half the range: [least, most] distance of each seat from the base, the nearest first."""
 
 
 class VolumetricTest(Strict):
@@ -75,8 +78,8 @@ class VolumetricTest(Strict):
     """Lengths in all, of all bars."""
     lengths: Count
     """Bars."""
-    shares: list[Annotated[list[Share], Field(min_length=2, max_length=2)]] = Field(default_factory=list)
-    """Of the reach: [least, most] length of each bar, the shortest bar first."""
+    shares: Shares = Field(default_factory=list)
+    """Of the reach, half the range: [least, most] length of each bar, the shortest bar first."""
 
 
 KINDS = ("sphere", "articulation", "length", "effective-diameter", "single-point", "volumetric")

@@ -11,7 +11,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.errors import UlnaInputError
-from ulna.files.checks import check_scale
+from ulna.files.checks import check_scale, remark_limits
 from ulna.files.columns import (
     ReadingsEntry,
     Source,
@@ -56,6 +56,8 @@ class Touches:
     """(N,) diameter of the probe's ball; NaN where it is not known."""
     row: I64
     """(N,) number in the file."""
+    arm_sha256: str | None = None
+    """Of the file of the arm that made points of encoder readings."""
 
     def where(self, chosen: I64) -> Touches:
         """Some of them."""
@@ -143,6 +145,7 @@ def read_touches(
     warmth_k = arm.warmth_k(_temperature(frame, arm, setting), len(row))
     balls = np.array([np.nan if each.ball_mm is None else each.ball_mm for each in arm.probes.values()])
     _remark_repeats(q_rad, header, remarks)
+    remark_limits(q_rad, row, "q", arm, path, remarks)
     p_mm = arm.core.tip(q_rad, probe, warmth_k)
     return Touches(path, file_sha256(path), "encoders", _labels(frame, entry, len(row)), p_mm, balls[probe], row)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -71,7 +71,9 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
         touches = read_touches(
             entry, number, setting, None if stated is None else stated.arm, None if stated is None else own, remarks
         )
-        used |= {own} if touches.source == "encoders" else set()
+        if touches.source == "encoders" and stated is not None:
+            used.add(own)
+            touches = replace(touches, arm_sha256=stated.sha256)
         _check_labels(touches, file, profile, path)
         found.setdefault(entry.state, []).append(touches)
     remarks += [f"{each}: the arm is not used: its readings are coordinates." for each in arms if each not in used]

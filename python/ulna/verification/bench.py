@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
@@ -147,6 +147,22 @@ def counted_each(what: str, found: Mapping[str, int], expected: int) -> list[str
     shown = ", ".join(f"{count} of {name}" for name, count in list(off.items())[:4])
     more = f", … ({len(off)} in all)" if len(off) > 4 else ""
     return [f"{what}: {shown}{more}; the profile counts {expected} of each."]
+
+
+def within_shares(
+    what: str, lengths_mm: Mapping[str, float], shares: Sequence[Sequence[float]], range_mm: float
+) -> list[str]:
+    """Departures of lengths, the shortest first, from the shares of the reach (half the range) that a profile asks."""
+    departures = []
+    ordered = sorted(lengths_mm.items(), key=lambda each: each[1])
+    for (name, length_mm), (least, most) in zip(ordered, shares, strict=False):
+        share = length_mm / (0.5 * range_mm)
+        if not least <= share <= most:
+            departures.append(
+                f"{what} {name}: {length_mm:.1f} mm, {100 * share:.0f} % of the reach (half the range); the profile "
+                f"asks for {100 * least:g} to {100 * most:g} %."
+            )
+    return departures
 
 
 def called(**labels: str) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import polars as pl
@@ -33,16 +35,17 @@ class Filled:
 EMPTY = Filled()
 
 
-def plan_toml(profile: Profile, filled: Filled, encoders: bool, angle: str = "rad") -> str:
-    """The text of a verify file: what is known filled in, the rest to be filled in where a '#' stands."""
-    name = profile.file.name if profile.file.name in shipped() else str(profile.path.resolve())
+def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) -> str:
+    """The text of a verify file in a folder: what is known filled in, the rest to be filled in where a '#' stands."""
+    own = profile.path not in shipped().values()
+    name = _path_from(folder, profile.path) if own else profile.file.name
     lines = [
         f"# An acceptance test to be measured as {TOUCHES} lists it, then evaluated by",
         f"# ulna verify {'ARM ' if encoders else ''}{PLAN}",
         "# Fill in what is missing; keys are explained in the reference of files.",
         'format = "ulna-verify/1"',
         f"profile = {toml_value(name)}",
-        f'units = {{ length = "mm", angle = "{angle}" }}',
+        'units = { length = "mm", angle = "rad" }',
         _line("arm", filled.arm, '"maker, type, serial number"'),
     ]
     if not encoders:
@@ -114,6 +117,14 @@ def _artefacts(profile: Profile) -> dict[str, dict[str, Any]]:
             "u_expansion": "0.5e-6",
         }
     return found
+
+
+def _path_from(folder: Path, path: Path) -> str:
+    """Relative where there is such a path, with the slashes of every system."""
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:  # on another drive
+        return str(path.resolve())
 
 
 def _line(key: str, value: Any, example: str) -> str:

@@ -10,9 +10,9 @@ from typing import Any
 import polars as pl
 
 from ulna.files.output import output_folder
-from ulna.files.profile import load_profile
+from ulna.files.profile import Profile, load_profile
 from ulna.model import Arm
-from ulna.verification.planned_files import EMPTY, PLAN, TOUCHES, plan_toml, touches_table
+from ulna.verification.planned_files import EMPTY, PLAN, TOUCHES, Filled, plan_toml, touches_table
 from ulna.verification.played import play
 
 Progress = Callable[[str, int, int], None]
@@ -26,14 +26,21 @@ class TestPlan:
 
     __test__ = False  # no test of pytest's
 
-    profile: str
-    text: str
+    profile: Profile
+    filled: Filled
+    encoders: bool
+    """Whether readings are encoder angles; else x, y, z."""
     table: pl.DataFrame
+    """One row a touch."""
+
+    def text(self, folder: str | Path) -> str:
+        """The verify file as it stands in a folder: it names its profile from there."""
+        return plan_toml(self.profile, self.filled, self.encoders, Path(folder))
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write plan.toml and touches.csv. Raises UlnaInputError."""
         with output_folder(folder, FILES, force) as staging:
-            (staging / PLAN).write_text(self.text, encoding="utf-8")
+            (staging / PLAN).write_text(self.text(folder), encoding="utf-8")
             self.table.write_csv(staging / TOUCHES)
 
     def counts(self) -> dict[str, int]:
@@ -49,7 +56,7 @@ def make_test_plan(profile: str, arm: Arm | None = None, beside: Path = Path()) 
     found = load_profile(profile, beside, "option --make-plan")
     names = ["x", "y", "z"] if arm is None else [f"q{k + 1}" for k in range(arm.n)]
     table = touches_table(found, {}).with_columns(pl.lit(None, dtype=pl.Float64).alias(name) for name in names)
-    return TestPlan(found.file.name, plan_toml(found, EMPTY, encoders=arm is not None), table)
+    return TestPlan(found, EMPTY, arm is not None, table)
 
 
 def play_test_plan(
@@ -69,4 +76,4 @@ def play_test_plan(
     found = load_profile(profile, beside, "option --make-plan")
     played = play(found, truth, encoder_rad, touch_mm, seed, progress)
     columns: dict[str, Any] = {f"q{k + 1}": played.q_rad[:, k] for k in range(truth.n)}
-    return TestPlan(found.file.name, plan_toml(found, played.filled, encoders=True), touches_table(found, columns))
+    return TestPlan(found, played.filled, True, touches_table(found, columns))

@@ -91,6 +91,7 @@ class Verification:
                         "sha256": each.sha256,
                         "rows": len(each.row),
                         "points": each.source,
+                        "arm_sha256": each.arm_sha256,
                     }
                     for state, parts in plan.touches.items()
                     for each in parts

@@ -167,6 +167,12 @@ impl Problem {
         searched
     }
 
+    /// The same knowledge, groups told by lengths where these are all that they say: nothing has to be placed then.
+    pub(crate) fn lengths_alone(&self) -> Problem {
+        let groups = self.groups.iter().map(|group| group.lengths_alone().unwrap_or_else(|| group.boxed()));
+        self.with_groups(groups.collect())
+    }
+
     /// Number of readings.
     pub fn readings(&self) -> usize {
         self.groups.iter().map(|g| g.len()).sum()

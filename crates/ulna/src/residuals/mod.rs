@@ -212,6 +212,12 @@ pub trait Readings: Debug + Send + Sync {
         None
     }
 
+    /// The same knowledge told by lengths alone, where that is all there is: of an artefact of two features, touched once
+    /// each wherever it stands, five of six coordinates say where that is. Same dimensions; weights are to be found anew.
+    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
+        None
+    }
+
     /// A copy.
     fn boxed(&self) -> Box<dyn Readings>;
 }

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ulna.errors import UlnaInputError
 from ulna.files.profile_tables import SinglePointTest
 from ulna.files.touches import Touches
-from ulna.verification.bench import Bench, Found, called, counted, counted_each
+from ulna.verification.bench import Bench, Found, called, counted, counted_each, within_shares
 from ulna.verification.figures.asme_b89_4_22 import single_point as asme
 from ulna.verification.figures.faro import half_ranges
 from ulna.verification.figures.figure import Definition, Figure
@@ -15,7 +17,7 @@ from ulna.verification.outcome import Labels, Single
 def single_point(name: str, table: SinglePointTest, touches: Touches, bench: Bench) -> Found:
     """Each position is a seat. Raises UlnaInputError."""
     found: dict[Definition, list[Single]] = {}
-    points = {}
+    points, away_mm = {}, {}
     standing = bench.surroundings.standing()
     for (artefact, position), own in touches.groups(("artefact", "position")):
         what = called(artefact=artefact, position=position)
@@ -33,7 +35,20 @@ def single_point(name: str, table: SinglePointTest, touches: Touches, bench: Ben
             single = Single(Labels(artefact, position), float(figure.value), standing)
             found.setdefault(figure.definition, []).append(single)
         points[what] = len(own.row)
+        away_mm[what] = float(np.linalg.norm(own.p_mm.mean(axis=0)))
     departures = counted("seats", len(points), table.positions) + counted_each(
         "touches of a seat", points, table.points
     )
+    departures += _shares(away_mm, table, touches, bench)
     return Found(list(found.items()), departures)
+
+
+def _shares(away_mm: dict[str, float], table: SinglePointTest, touches: Touches, bench: Bench) -> list[str]:
+    """Whether the seats stood as far out as the profile asks."""
+    if not table.shares or len(away_mm) != len(table.shares):
+        return []
+    if touches.source == "xyz":
+        return ["how far from the base the seats stood was not checked: coordinates may be in any frame."]
+    if bench.range_mm is None:
+        return ["the measuring range is not stated (key 'range'): how far out the seats stood was not checked."]
+    return within_shares("seat", away_mm, table.shares, bench.range_mm)

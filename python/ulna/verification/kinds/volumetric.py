@@ -7,7 +7,7 @@ import numpy as np
 from ulna.errors import UlnaInputError
 from ulna.files.profile_tables import VolumetricTest
 from ulna.files.touches import Touches
-from ulna.verification.bench import Bench, Found, counted
+from ulna.verification.bench import Bench, Found, counted, within_shares
 from ulna.verification.figures.asme_b89_4_22 import VOLUMETRIC_MAX
 from ulna.verification.figures.asme_b89_4_22 import volumetric as asme
 from ulna.verification.figures.lengths import OPPOSING
@@ -44,22 +44,14 @@ def volumetric(name: str, table: VolumetricTest, touches: Touches, bench: Bench)
     bars = {each.name: each.calibrated_mm for each, _ in measured}
     departures = counted("lengths measured", len(singles), table.positions)
     departures += counted("bars", len(bars), table.lengths)
-    departures += _shares(sorted(bars.items(), key=lambda bar: bar[1]), table, bench)
+    departures += _shares(bars, table, bench)
     return Found(figures, departures)
 
 
-def _shares(bars: list[tuple[str, float]], table: VolumetricTest, bench: Bench) -> list[str]:
+def _shares(bars: dict[str, float], table: VolumetricTest, bench: Bench) -> list[str]:
     """Whether the bars are as long as the profile asks."""
     if not table.shares or len(bars) != len(table.shares):
         return []
     if bench.range_mm is None:
         return ["the measuring range is not stated (key 'range'): the lengths of the bars were not checked."]
-    departures = []
-    for (name, length_mm), (least, most) in zip(bars, table.shares, strict=True):
-        share = length_mm / (0.5 * bench.range_mm)
-        if not least <= share <= most:
-            departures.append(
-                f"bar {name}: {length_mm:.1f} mm, {100 * share:.0f} % of the reach (half the range); the profile asks "
-                f"for {100 * least:g} to {100 * most:g} %."
-            )
-    return departures
+    return within_shares("bar", bars, table.shares, bench.range_mm)

@@ -258,8 +258,44 @@ impl Readings for Points {
         if !told || pairs.is_empty() {
             return None;
         }
+        Some(Box::new(self.lengths_between(&pairs, "pairs", 0.0, false)))
+    }
+
+    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
+        let (feature, probe, poses) = (&self.touches.feature, &self.touches.probe, &self.touches.poses);
+        let a_bar = |rows: &Range<usize>| {
+            let (a, b) = (rows.start, rows.start + 1);
+            let warm = |row: usize| poses.sample(row, 0).warmth_k;
+            rows.len() == 2 && feature[a] != feature[b] && probe[a] == probe[b] && warm(a) == warm(b)
+        };
+        let two_features = self.frame == Frame::Free && self.features_mm.len() == 2;
+        let known = self.of_its_own.iter().all(|&variance| variance == 0.0) && self.dimensions.len() <= 1;
+        let apart = self.placements.iter().all(|placement| placement.span > 0);
+        if !(two_features && known && apart && self.touches.standings.iter().all(a_bar)) {
+            return None;
+        }
+        let (name, u_mm, fitted) = match self.dimensions.first() {
+            None => ("", 0.0, false),
+            Some(length) => {
+                let name = length.name.strip_prefix("artefact.")?.strip_suffix(".length")?;
+                (name, length.u_mm, length.fitted)
+            }
+        };
+        let pairs: Vec<(usize, usize)> =
+            self.touches.standings.iter().map(|rows| (rows.start, rows.start + 1)).collect();
+        Some(Box::new(self.lengths_between(&pairs, name, u_mm, fitted)))
+    }
+
+    fn boxed(&self) -> Box<dyn Readings> {
+        Box::new(self.clone())
+    }
+}
+
+impl Points {
+    /// Pairs of touches as lengths between them.
+    fn lengths_between(&self, pairs: &[(usize, usize)], name: &str, u_mm: f64, fitted: bool) -> Lengths {
         let (mut q_rad, mut p_rad, mut warmth_k) = (vec![], vec![], vec![]);
-        for &(from, to) in &pairs {
+        for &(from, to) in pairs {
             let (first, second) = (self.touches.poses.sample(from, 0), self.touches.poses.sample(to, 0));
             q_rad.extend(first.q_rad);
             p_rad.extend(second.q_rad);
@@ -273,15 +309,9 @@ impl Readings for Points {
             probe: &pairs.iter().map(|&(from, _)| self.touches.probe[from]).collect::<Vec<_>>(),
             length_mm: &pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect::<Vec<_>>(),
         };
-        Some(Box::new(Lengths::new("pairs", self.touches.poses.encoders(), rows, 0.0, false)))
+        Lengths::new(name, self.touches.poses.encoders(), rows, u_mm, fitted)
     }
 
-    fn boxed(&self) -> Box<dyn Readings> {
-        Box::new(self.clone())
-    }
-}
-
-impl Points {
     /// Touches of one standing in pairs at different features, with one probe each: every touch with three others at most,
     /// as many as hold a body of points together.
     fn pairs(&self, rows: &Range<usize>) -> Vec<(usize, usize)> {
