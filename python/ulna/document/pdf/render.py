@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.document.content import Content
+from ulna.document.html.markup import END, ISOLATE
 from ulna.document.languages import Words, dictionary
 from ulna.document.pdf import blocks, figures, head, results, tested
 from ulna.document.pdf.blocks import Block
@@ -39,7 +40,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
         "lang": language,
         "region": REGIONS.get(language),
         "title": words("paper.title") if signed else words("title"),
-        "author": head.issuer(content, words) or name(f"{made.program} {made.version}"),
+        "author": (head.issuer(content, words) or name(f"{made.program} {made.version}")).strip(ISOLATE + END),
         "issuer": head.issuer(content, words) or words("title"),
         "number": head.identifier(content),
         "date": head.date(content),
