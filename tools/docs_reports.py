@@ -32,15 +32,17 @@ LANGUAGES = ("en", "de")
 
 
 def cheng2011_reports() -> dict[str, bytes]:
-    """Name → page, one for each language that the example's laboratory file knows. Raises RuntimeError."""
+    """Name → page (HTML and PDF), for each language that the example's laboratory file knows. Raises RuntimeError."""
     with reader_folder() as folder:
         names = {language: f"cheng2011-{language}.html" for language in LANGUAGES}
         written = [[*REPORT, "--language", each, "-o", name] for each, name in names.items()]
+        papers = [f"cheng2011-{language}.pdf" for language in LANGUAGES]
+        written += [[*REPORT, "--pdf", "--language", each, "-o", papers[k]] for k, each in enumerate(LANGUAGES)]
         for arguments in [*STEPS, *written]:
             done = ulna(arguments, folder)
             if done.returncode != 0:
                 raise RuntimeError(f"ulna {' '.join(arguments)} exited with {done.returncode}:\n{done.stderr}")
-        return {name: (folder / name).read_bytes() for name in names.values()}
+        return {name: (folder / name).read_bytes() for name in (*names.values(), *papers)}
 
 
 def on_files(files: Any, config: Any) -> Any:

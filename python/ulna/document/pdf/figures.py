@@ -19,6 +19,7 @@ from ulna.document.content import Cloud, Lengths, Parameters, QualityRow, Readin
 from ulna.document.languages import Words
 from ulna.document.tested import limit_lines
 from ulna.document.thinning import shown, shown_ranks
+from ulna.errors import UlnaInputError
 from ulna.reproduce.style import BLUE, GREEN, GREY, STYLE, VERMILION
 
 INCH_MM = 25.4
@@ -36,10 +37,17 @@ VERDICTS = {"pass": ("o", BLUE), "undecided": ("D", GREEN), "fail": ("X", VERMIL
 
 @contextmanager
 def looks(fonts: Sequence[Path]) -> Iterator[None]:
-    """Letters small enough for paper, and the page's other fonts where the first has not the sign."""
+    """Letters small enough for paper, and the page's other fonts where the first has not the sign. Raises
+    UlnaInputError for a font that Matplotlib cannot read."""
     names = ["DejaVu Sans"]
     for file in fonts:
-        font_manager.fontManager.addfont(file)
+        try:
+            font_manager.fontManager.addfont(file)
+        except (RuntimeError, OSError):
+            raise UlnaInputError(
+                f"PDF: the font {file} cannot be used in figures. Name a folder with another font by --fonts, such as "
+                "Noto Sans CJK (OpenType)."
+            ) from None
         names.append(font_manager.FontProperties(fname=file).get_name())
     size: Any = {
         "font.size": 7.5,

@@ -8,7 +8,7 @@ from typing import Any
 
 from ulna.document.content import Content
 from ulna.document.languages import Words
-from ulna.document.pdf import blocks
+from ulna.document.pdf import blocks, results
 from ulna.document.pdf.blocks import Block, Cell
 from ulna.document.pdf.text import clean, name
 from ulna.errors import UlnaInputError
@@ -81,6 +81,8 @@ def first_page(content: Content, words: Words) -> list[Block]:
     """All that stands before the results."""
     found = content.laboratory
     page: list[Block] = []
+    if not content.fit.converged:
+        page.append(blocks.paragraph(results.ending_sentence(content, words), "bad"))
     if found is None:
         page.append(blocks.paragraph(words("paper.no-laboratory"), "bad"))
     page.append(blocks.facts(_facts(content, words)))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.document.content import Content
+from ulna.document.html.markup import END, ISOLATE
 from ulna.document.languages import Words, dictionary
 from ulna.document.pdf import blocks, figures, head, results, tested
 from ulna.document.pdf.blocks import Block
@@ -39,7 +40,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
         "lang": language,
         "region": REGIONS.get(language),
         "title": words("paper.title") if signed else words("title"),
-        "author": head.issuer(content, words) or name(f"{made.program} {made.version}"),
+        "author": (head.issuer(content, words) or name(f"{made.program} {made.version}")).strip(ISOLATE + END),
         "issuer": head.issuer(content, words) or words("title"),
         "number": head.identifier(content),
         "date": head.date(content),
@@ -56,12 +57,12 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
             *results.ending(content, words),
             *results.parameters(content, words),
             *results.determined(content, words),
+            *results.extras(content, words),
             *results.quality(content, words),
         ],
     }
+    uncertainty = [*tested.decision(content, words), *results.uncertainty_statement(content, words)]
     after: list[Block] = [
-        *results.uncertainty_statement(content, words),
-        *tested.decision(content, words),
         *results.artefacts(content, words),
         *results.outliers(content, words),
         *results.provenance(content, words),
@@ -71,12 +72,13 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
         {"kind": "signatures", "people": head.people(content)},
     ]
     # labels of figures are words of the dictionary: all of them, so that fonts are known before they are drawn
-    chosen = choose([*_texts(data), *_texts(after), *dictionary(language).values(), *_captions_of(content)], fonts)
+    said = [*_texts(data), *_texts(uncertainty), *_texts(after), *dictionary(language).values(), *_captions_of(content)]
+    chosen = choose(said, fonts)
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     with figures.looks([family.regular for family in chosen.more]):
-        data["blocks"] += [*tested.verification(content, words), *_figures(content, words)]
-    data["blocks"] += after
+        data["blocks"] += [*_before_after(content, words), *tested.verification(content, words), *uncertainty]
+        data["blocks"] += [*_figures(content, words), *after]
     return data, chosen
 
 
@@ -95,13 +97,13 @@ def _captions_of(content: Content) -> list[str]:
     return [clean(each) for each in said]
 
 
-def _figures(content: Content, words: Words) -> list[Block]:
-    page: list[Block] = []
+def _before_after(content: Content, words: Words) -> list[Block]:
     pair = figures.before_after(content.quality, words)
-    if pair is not None:
-        page.append(blocks.figures([blocks.figure(pair, words("paper.before-after"))], 1))
-    page += _distributions(content, words)
-    page += _clouds(content, words)
+    return [] if pair is None else [blocks.figures([blocks.figure(pair, words("paper.before-after"))], 1)]
+
+
+def _figures(content: Content, words: Words) -> list[Block]:
+    page = [*_distributions(content, words), *_clouds(content, words)]
     ratio = figures.ratios(content.parameters, words)
     if ratio is not None:
         page.append(blocks.heading(words("paper.moved")))
@@ -127,8 +129,8 @@ def _distributions(content: Content, words: Words) -> list[Block]:
         return []
     return [
         blocks.heading(words("section.distribution")),
+        blocks.paragraph(words("distribution.note"), "lead"),
         blocks.figures(found, 2),
-        blocks.paragraph(words("distribution.note"), "note"),
     ]
 
 
@@ -137,7 +139,7 @@ def _clouds(content: Content, words: Words) -> list[Block]:
     for each in content.clouds:
         if each.over == "joint":
             svg, said = figures.cloud(each, content.readings, words)
-            over_joints.append(blocks.figure(svg, " ".join([f"{words('joint.number', joint=each.joint)}.", *said])))
+            over_joints.append(blocks.figure(svg, " ".join([f"{words('joint.number', joint=each.joint)}:", *said])))
     page = [blocks.heading(words("section.joints"))]
     if over_joints:
         legend = words("paper.cloud-legend")

@@ -17,6 +17,7 @@ from ulna.report.identification import combination, sentence
 
 MOST_OUTLIERS = 40
 """In print; the result has all of them."""
+_CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study")
 
 
 def parameters(content: Content, words: Words) -> list[Block]:
@@ -111,8 +112,7 @@ def quality(content: Content, words: Words) -> list[Block]:
         for row in content.quality
     ]
     said = [
-        blocks.paragraph(words.say(each), "missing" if each.key == "held-out.none" else "plain")
-        for each in content.held_out
+        blocks.paragraph(words.say(each), "missing" if each.key in _CAUTIONS else "plain") for each in content.held_out
     ]
     return [
         blocks.heading(words("section.quality")),
@@ -194,6 +194,24 @@ def _lacks(content: Content, words: Words, *keys: str) -> list[Block]:
     return [blocks.paragraph(words.say(content.missing[key]), "missing") for key in keys if key in content.missing]
 
 
+def extras(content: Content, words: Words) -> list[Block]:
+    """Blocks beyond geometry and their verdicts; nothing where none was asked for."""
+    if not content.extras:
+        return []
+    rows: list[list[Cell]] = []
+    for each in content.extras:
+        order = "" if each.order is None else f", {words('extra.order', order=each.order)}"
+        errors = [figure_mm(value) for value in (each.without_mm, each.with_mm, each.better_by_mm)]
+        said = [words(f"extra.{each.extra}") + order, words(f"figure.{each.figure}"), words(f"verdict.{each.verdict}")]
+        rows.append([*said, *errors, uncertainty(each.u_better_by_mm)])
+    keys = ("extra", "quantity", "verdict", "without", "with", "better", "u-better")
+    return [
+        blocks.heading(words("section.extras")),
+        blocks.table([words(f"column.{key}") for key in keys], rows, [1.6, 1.8, 1.2, 1, 1, 1, 1], left=3),
+        blocks.paragraph(words("extras.note"), "note"),
+    ]
+
+
 def outliers(content: Content, words: Words) -> list[Block]:
     """The farthest, and how many more there are."""
     page = [blocks.heading(words("section.outliers"))]
@@ -243,11 +261,15 @@ def provenance(content: Content, words: Words) -> list[Block]:
     ]
 
 
+def ending_sentence(content: Content, words: Words) -> str:
+    """How the fit ended."""
+    key = f"ending.{content.fit.termination}"
+    return words(key) if words.has(key) else name(content.fit.termination)
+
+
 def ending(content: Content, words: Words) -> list[Block]:
     """How the fit ended and what it rests on."""
     fit = content.fit
-    key = f"ending.{fit.termination}"
-    said = words(key) if words.has(key) else name(fit.termination)
     counts = words(
         "summary.counts",
         readings=fit.readings,
@@ -264,7 +286,7 @@ def ending(content: Content, words: Words) -> list[Block]:
     more += [words("summary.signs", joints=", ".join(map(str, joints))) for joints in fit.undecided_signs]
     return [
         blocks.heading(words("section.summary")),
-        blocks.paragraph(said, "plain" if fit.converged else "bad"),
+        blocks.paragraph(ending_sentence(content, words), "plain" if fit.converged else "bad"),
         blocks.listed(more),
     ]
 

@@ -66,7 +66,7 @@ def _lengths(found: Verification, words: Words) -> list[Block]:
     for each in found.lengths:
         if len(each.error_mm):
             values = {"figure": each.figure, "test": each.test, "count": len(each.error_mm)}
-            caption = words("verification.lengths", **values, state=words(f"state.{each.state}"))
+            caption: str = words("verification.lengths", **values, state=words(f"state.{each.state}"))
             if each.a_mm is None:
                 caption = f"{caption} {words('verification.no-mpe')}"
             drawn.append(blocks.figure(figures.tested_lengths(each, words), caption))
