@@ -219,6 +219,11 @@ def test_a_combination_in_words() -> None:
     )
 
 
+def test_two_digits_are_those_after_rounding() -> None:
+    assert [uncertainty(u) for u in (0.0996, 0.996, 9.96, 0.0994, 0.000999)] == ["0.10", "1.0", "10", "0.099", "0.0010"]
+    assert [decimals(u, "mm") for u in (0.0996, 0.0994)] == [2, 3]
+
+
 def test_the_cylindrical_view_and_its_uncertainty() -> None:
     """x = r cos theta0, y = -r sin theta0: propagated, against a Monte Carlo draw."""
     rng = np.random.default_rng(0)

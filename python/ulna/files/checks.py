@@ -30,6 +30,14 @@ MOST_RAD = 4.0 * math.pi
 SHOWN = 5
 
 
+def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
+    """The probe that a file's key names; the arm's only one where it names none. Raises UlnaInputError."""
+    try:
+        return list(arm.probes)[arm.probe_index(probe)]
+    except UlnaInputError as error:
+        raise UlnaInputError(f"{path}: key 'probe': {error} Correct it.") from None
+
+
 def check_scale(q_rad: F64, letter: str, factors: F64, unit: str, header: Header, row: I64) -> None:
     """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit."""
     for k, factor in enumerate(factors):

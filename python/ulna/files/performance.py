@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
 from ulna.errors import UlnaInputError, nearest
+from ulna.files.checks import named_probe
 from ulna.files.models import Strict, fill
 from ulna.files.simulation import encoder_of, travel_of
 from ulna.files.simulation_tables import PositiveEach, TravelTable
@@ -152,20 +153,10 @@ def read_performance(path: Path, arm: Arm) -> StatedPerformance:
         raise UlnaInputError(
             f"{path}: key 'spread.factor': got {file.spread.factor}, expected the lower number first. Swap them."
         )
-    probes = list(arm.probes)
-    if file.probe is None and len(probes) > 1:
-        raise UlnaInputError(
-            f"{path}: key 'probe' is missing, and arm '{arm.name}' has {len(probes)} probes: {', '.join(probes)}. Name "
-            "the one of the test."
-        )
-    if file.probe is not None and file.probe not in probes:
-        raise UlnaInputError(
-            f"{path}: key 'probe': arm '{arm.name}' has no probe '{file.probe}'.{nearest(file.probe, probes)}"
-        )
     units = file.units
     performance = Performance(
         label=str(path),
-        probe=file.probe or probes[0],
+        probe=named_probe(file.probe, arm, path),
         spread_rad=file.spread.angle * units.rad,
         spread_mm=file.spread.length * units.mm,
         factor=(low, high),

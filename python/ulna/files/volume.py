@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ulna.errors import UlnaInputError, nearest
+from ulna.files.checks import named_probe
 from ulna.files.models import Strict, fill
 from ulna.files.simulation import travel_of, volume_of
 from ulna.files.simulation_tables import TravelTable, VolumeTable
@@ -81,21 +81,11 @@ def read_volume(path: Path, arm: Arm) -> StatedVolume:
     check_format(document, path, "ulna-volume")
     file = fill(VolumeFile, document, path)
     check_temperature(file.temperature, arm, path)
-    probes = list(arm.probes)
-    if file.probe is None and len(probes) > 1:
-        raise UlnaInputError(
-            f"{path}: key 'probe' is missing, and arm '{arm.name}' has {len(probes)} probes: {', '.join(probes)}. Name "
-            "the one that is on."
-        )
-    if file.probe is not None and file.probe not in probes:
-        raise UlnaInputError(
-            f"{path}: key 'probe': arm '{arm.name}' has no probe '{file.probe}'.{nearest(file.probe, probes)}"
-        )
     units = file.units
     return StatedVolume(
         path=path,
         file=file,
-        probe=probes[0] if file.probe is None else file.probe,
+        probe=named_probe(file.probe, arm, path),
         lengths_mm=None if file.lengths is None else tuple(sorted({length * units.mm for length in file.lengths})),
         box_mm=volume_of(file.volume, units, path),
         travel_rad=travel_of(file.travel, arm, units, path),

@@ -14,7 +14,7 @@ def decimals(u: float | None, unit: str) -> int:
     """Decimals that show two digits of a standard uncertainty `u`."""
     if u is None or not u > 0.0:
         return _PLAIN_DECIMALS[unit]
-    return min(max(1 - math.floor(math.log10(u)), 0), _MOST_DECIMALS[unit])
+    return min(max(1 - _power(u), 0), _MOST_DECIMALS[unit])
 
 
 def quantity(value: float, u: float | None, unit: str) -> str:
@@ -23,7 +23,7 @@ def quantity(value: float, u: float | None, unit: str) -> str:
         return fixed(value, decimals(u, unit))
     if value == 0.0:
         return "0"
-    bears = 3 if not u else math.floor(math.log10(abs(value))) - math.floor(math.log10(u)) + 2
+    bears = 3 if not u else _power(value) - _power(u) + 2
     return small(value, min(max(bears, 1), 6))
 
 
@@ -39,7 +39,12 @@ def uncertainty(u: float | None) -> str:
         return "–"
     if u == 0.0:
         return "0"
-    return small(u, 2) if u < 1e-4 else fixed(u, max(1 - math.floor(math.log10(u)), 0))
+    return small(u, 2) if u < 1e-4 else fixed(u, max(1 - _power(u), 0))
+
+
+def _power(value: float) -> int:
+    """Of ten, of the first digit when two are shown: 0.0996 is 0.10."""
+    return int(f"{value:.1e}".split("e")[1])
 
 
 def figure_mm(value: float) -> str:
