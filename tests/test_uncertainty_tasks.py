@@ -334,7 +334,7 @@ def test_touches_on_a_line_say_no_plane(calibrated) -> None:
     q_rad = truth.touch(line, 3, rng)
     with pytest.raises(UlnaInputError, match="hardly say what is asked, a plane"):
         first_order(arm, task_of("plane", [0] * 5, q_rad))  # about the line it may turn as it likes
-    with pytest.raises(UlnaInputError, match="hardly say|on a line"):
+    with pytest.raises(UlnaInputError, match=r"hardly say|on a line"):
         first_order(arm, task_of("plane", [0] * 5, np.repeat(q_rad[:1], 5, axis=0)))
 
 
