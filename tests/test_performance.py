@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
+from ulna.errors import InputWarning
 from ulna.files.performance import read_performance
 from ulna.model import Arm
 from ulna.performance import LengthTest, Performance, PointTest, SphereTest
@@ -218,3 +220,34 @@ def test_a_study_and_a_certificate_are_one_too_many(files: Path, root: Path) -> 
     assert_bad_input(run(*ask, "--study", study), "Leave one out")
     stated = read_performance(files / "performance.toml", Arm.load(files / "platinum.toml"))
     assert stated.performance.tests[1].figures_mm == {"two_sigma": 0.055}
+
+
+def test_a_file_of_format_1_arrives(root: Path) -> None:
+    fossils = root / "tests" / "data" / "fossils"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        arm = Arm.load(fossils / "arm-1.toml")
+    stated = read_performance(fossils / "performance-1.toml", arm)
+    assert stated.travel_rad is not None
+    assert stated.travel_rad[3] == pytest.approx(np.radians([-70.0, 70.0]))
+    found = stated.performance
+    assert (found.probe, found.within, found.at_most, found.factor, found.hold) == (
+        "bent",
+        0.3,
+        True,
+        (0.1, 10.0),
+        ("joint.1.*",),
+    )
+    assert (found.spread_rad, found.spread_mm) == pytest.approx((np.radians(0.001), 0.0254))
+    assert found.encoder_rad == pytest.approx(np.radians([0.001, 0.002, 0.001, 0.001]))
+    assert found.seat_mm == pytest.approx(0.01016)
+    point, length, sphere = found.tests
+    assert isinstance(point, PointTest)
+    assert (point.positions, point.touches) == ((0.3, 0.7), 8)
+    assert point.figures_mm == pytest.approx({"largest": 0.0254, "two_s": 0.0508, "half_range": 0.0381})
+    assert isinstance(length, LengthTest)
+    assert (length.lengths_mm, length.places) == (pytest.approx((254.0, 508.0)), 6)
+    assert length.figures_mm == pytest.approx({"largest": 0.0762, "two_sigma": 0.1016, "half_range": 0.0889})
+    assert isinstance(sphere, SphereTest)
+    assert (sphere.diameter_mm, sphere.positions, sphere.touches) == (25.4, 3, 9)
+    assert sphere.figures_mm == pytest.approx({"form": 0.127, "size": 0.1524})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import polars as pl
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
+from ulna.errors import InputWarning
+from ulna.files.volume import is_volume, read_volume
 from ulna.model import Arm, ParameterCovariance
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
@@ -153,3 +156,22 @@ def test_messages(result: Path, tmp_path: Path, root: Path) -> None:
     refused(text + "\n[volume]\nlow = [5000, 0, 0]\nhigh = [5001, 1, 1]\n", "only 0 of 20000", "within its reach")
     study = str(root / "examples" / "platinum" / "study.toml")
     refused(text, "first order and quick", "--study", options=("--study", study))
+
+
+def test_a_file_of_format_1_arrives(root: Path) -> None:
+    fossils = root / "tests" / "data" / "fossils"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        arm = Arm.load(fossils / "arm-1.toml")
+    assert is_volume(fossils / "volume-1.toml")
+    found = read_volume(fossils / "volume-1.toml", arm)
+    assert found.probe == "bent"
+    assert found.lengths_mm == pytest.approx((254.0, 508.0))
+    assert found.box_mm == ((-254.0, -254.0, 0.0), (254.0, 254.0, 508.0))
+    assert found.travel_rad == pytest.approx(np.radians([[-100.0, 100.0]] * 4))
+    assert found.noise is not None
+    assert found.noise.encoder_rad == pytest.approx(np.radians([0.001, 0.002, 0.001, 0.001]))
+    assert found.noise.seat_mm == pytest.approx(0.01016)
+    assert (found.file.points, found.file.bars, found.file.p) == (500, 200, 0.99)
+    assert found.file.temperature is not None
+    assert (found.file.temperature.value, found.file.temperature.u) == (21.5, 0.5)
