@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
-from ulna.errors import InputWarning
+from ulna.effects import Effects
+from ulna.errors import InputWarning, UlnaInputError
 from ulna.files.performance import read_performance
 from ulna.model import Arm
 from ulna.performance import LengthTest, Performance, PointTest, SphereTest
@@ -196,7 +197,7 @@ def test_known_of_a_certificate_is_first_order_too(files: Path) -> None:
     ("old", "new", "expected"),
     [
         ("two_s = 0.060", "", ("key 'test.1'", "figure is missing", "largest, two_s, half_range")),
-        ("two_s = 0.060", "two_s = 0.001", ("none agrees", "two_s of test 1", "noise alone")),
+        ("two_s = 0.060", "two_s = 0.001", ("drawn none agrees", "two_s of test 1", "noise alone")),
         ('kind = "point"', 'kind = "pont"', ("key 'test.1.kind'", "Did you mean 'point'?")),
         ("two_s = 0.060", "two_sigma = 0.060", ("unknown key 'test.1.two_sigma'",)),
         ("angle = 1e-5", "angle = 1e-5\nfactor = [2, 1]", ("'spread.factor'", "Swap them")),
@@ -212,6 +213,29 @@ def test_messages(files: Path, old: str, new: str, expected: tuple[str, ...]) ->
     path.write_text(path.read_text().replace(old, new))
     done = run("uncertainty", files / "platinum.toml", files / "length.toml", "--performance", path)
     assert_bad_input(done, *expected)
+
+
+def test_nothing_is_known_of_another_probe(files: Path) -> None:
+    with (files / "platinum.toml").open("a") as arm:
+        arm.write("\n[probe.other]\ntip = { x = 0.0, y = 10.0, z = 100.0 }\n")
+    path = files / "performance.toml"
+    path.write_text(path.read_text().replace("units = {", 'probe = "bent"\nunits = {', 1))
+    for name, key in (("length.toml", 'file = "length.csv"\nprobe = "other"'), ("volume.toml", None)):
+        task = files / name
+        text = task.read_text()
+        task.write_text(
+            text.replace('file = "length.csv"', key)
+            if key
+            else text.replace("units = {", 'probe = "other"\nunits = {', 1)
+        )
+        done = run("uncertainty", files / "platinum.toml", task, "--performance", path)
+        assert_bad_input(done, "probe 'other' is on", "is of probe 'bent'", "nothing is known")
+
+
+def test_arms_that_grow_are_refused(arm: Arm) -> None:
+    grows = replace(arm, joints=(replace(arm.joints[0], effects=Effects(expansion_per_k=1e-5)), *arm.joints[1:]))
+    with pytest.raises(UlnaInputError, match="grow with temperature"):
+        Constrained(grows, certificate(POINT), TRAVEL)
 
 
 def test_a_study_and_a_certificate_are_one_too_many(files: Path, root: Path) -> None:

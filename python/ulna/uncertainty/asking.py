@@ -68,6 +68,8 @@ def uncertainty(
     stated = read_task(task, arm, {kind: list(found.features) for kind, found in MEASURANDS.items()}, remarks)
     for remark in remarks:
         warnings.warn(remark, InputWarning, stacklevel=2)
+    probe = list(arm.probes)[stated.probe]
+    known.check_probe(probe, str(task))
     touched = Touched(stated.file.kind, stated.feature)
     touched.check(str(task))
     encoder_rad, seat_mm = known.noise(stated.noise)
@@ -77,7 +79,7 @@ def uncertainty(
         Task(
             touched=touched,
             q_rad=np.ascontiguousarray(stated.q_rad),
-            probe=list(arm.probes)[stated.probe],
+            probe=probe,
             label=str(task),
             encoder_rad=encoder_rad,
             seat_mm=seat_mm,
@@ -111,6 +113,7 @@ def volume_uncertainty(
     and a volume file; performance as for `uncertainty`. Raises UlnaInputError; KeyboardInterrupt."""
     known = _known(Path(result), performance, seed, workers, progress)
     stated = read_volume(Path(task), known.arm)
+    known.check_probe(stated.probe, str(task))
     encoder_rad, seat_mm = known.noise(stated.noise)
     warm = stated.file.temperature
     asked = VolumeTask(

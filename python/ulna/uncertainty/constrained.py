@@ -34,7 +34,9 @@ SET_UPS = 16
 ROUND = 20
 """Blocks before it is asked again whether they are enough."""
 BARREN = 300
-"""Blocks without an arm that agrees before it is said that there is none."""
+"""Blocks before it is said that hardly an arm agrees."""
+FEWEST = 3
+"""Arms that agree among those: with fewer it would take hours."""
 FRAME = ("joint.1.theta0", "joint.1.d")
 """What only moves the base frame shows in no test."""
 
@@ -59,7 +61,12 @@ class Constrained:
         workers: Workers | None = None,
         progress: Progress | None = None,
     ) -> None:
-        """Raises UlnaInputError for patterns that hold nothing or all, and for tests that the arm cannot take."""
+        """Raises UlnaInputError for patterns that hold nothing or all, and for tests or arms that cannot be."""
+        if "link-expansion" in arm.extras:
+            raise UlnaInputError(
+                f"{performance.label}: the links of arm '{arm.name}' grow with temperature, which performance files do "
+                "not cover. Remove expansion from the arm file."
+            )
         self.performance = performance
         self._workers = workers or Threads()
         self._told = progress if progress is not None else lambda *_: None
@@ -100,13 +107,13 @@ class Constrained:
                 self._kept.append(found[place])
                 self._count += len(found[place])
             self._blocks += ROUND
-            if self._count == 0 and self._blocks >= BARREN:
-                raise self._nothing()
+            if self._count < FEWEST and self._blocks >= BARREN:
+                raise self._hardly_any()
         self._told("arms that agree", first + count, first + count)
         self._kept = [np.concatenate(self._kept)]
         return self._mean + self._kept[0][first : first + count]
 
-    def _nothing(self) -> UlnaInputError:
+    def _hardly_any(self) -> UlnaInputError:
         figures, _ = _tested(
             self.performance, self._spread, np.random.default_rng([self._seed, 61, 0]), self._set_ups[0]
         )
@@ -117,8 +124,9 @@ class Constrained:
             for name, values in found.items()
             if name in test.figures_mm
         ]
+        few = "none agrees" if self._count == 0 else f"only {self._count} agree{'s' * (self._count == 1)}"
         return UlnaInputError(
-            f"{self.performance.label}: of {self._blocks * BLOCK} arms drawn none agrees with all figures: "
+            f"{self.performance.label}: of {self._blocks * BLOCK} arms drawn {few} with all figures: "
             f"{'; '.join(ranges)}. Look whether the noise alone is more than the certificate allows, whether figures "
             "and units are right, or widen 'within' or spread.factor."
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.errors import UlnaInputError
 from ulna.files.arm import arm_of_result
 from ulna.files.covariance import noise_of_result, seat_of_result
 from ulna.files.performance import read_performance
@@ -44,6 +45,15 @@ class Known:
     """Provenance of the result."""
     arms: Constrained | None = None
     """Where nothing but a performance test is known: the arms that agree with it."""
+
+    def check_probe(self, probe: str, label: str) -> None:
+        """Raises UlnaInputError where nothing is known of a probe: another one was on in the performance test."""
+        tested = probe if self.arms is None else self.arms.performance.probe
+        if probe != tested:
+            raise UlnaInputError(
+                f"{label}: probe '{probe}' is on, but {self.arms.performance.label if self.arms else ''} is of probe "
+                f"'{tested}'; expected the same, for nothing is known of another one's tip. Measure with '{tested}'."
+            )
 
     def noise(self, stated: Noise | None) -> tuple[F64 | None, float | None]:
         """encoder_rad and seat_mm of a measurement: as stated of it, else as known."""
