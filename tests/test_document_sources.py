@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import shutil
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import numpy as np
 import polars as pl
 import pytest
 from tests.cli_runs import platinum, write_lengths
+from tests.pdf_reading import Pdf, holds
 from tests.reports import calibrated, seats_study
 from tests.test_document_html import Page
 
@@ -16,6 +19,7 @@ import ulna
 from ulna import UlnaInputError
 from ulna.document.gather import gather
 from ulna.document.html.page import render
+from ulna.document.pdf.render import render as render_pdf
 
 FOSSILS = Path(__file__).resolve().parent / "data" / "fossils"
 
@@ -133,6 +137,48 @@ def test_an_evaluation_is_held_out_unless_its_readings_were_fitted(result, tmp_p
     ulna.evaluate(arm, ulna.Study.load(result.parent.parent / "study.toml")).save(tmp_path / "same")
     content = gather(result, evaluation=tmp_path / "same" / "evaluation.json")
     assert [said.key for said in content.held_out] == ["held-out.evaluated", "held-out.same-readings"]
+
+
+def test_an_evaluation_is_of_this_arm_and_no_other(result, tmp_path):
+    fresh = ulna.Study.load(write_lengths(tmp_path / "fresh", rows=30))
+    ulna.evaluate(ulna.Arm.load(result.parent / "arm.toml"), fresh).save(tmp_path / "toml")
+    content = gather(result, evaluation=tmp_path / "toml" / "evaluation.json")
+    assert [said.key for said in content.held_out] == ["held-out.evaluated"]
+
+    ulna.evaluate(fresh.arm, fresh).save(tmp_path / "start")
+    wrong = tmp_path / "start" / "evaluation.json"
+    with pytest.raises(
+        UlnaInputError, match=r"is an evaluation of another arm.*parameters\.joint.*expected.*in the result"
+    ):
+        gather(result, evaluation=wrong)
+    document = json.loads(wrong.read_text(encoding="utf-8"))
+    assert document["parameters"] == dict(zip(fresh.arm.parameter_names, fresh.arm.parameters.tolist(), strict=True))
+
+    document["parameters"] = {}
+    wrong.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(UlnaInputError, match="is missing, expected"):
+        gather(result, evaluation=wrong)
+    del document["parameters"]  # as earlier versions wrote it
+    wrong.write_text(json.dumps(document), encoding="utf-8")
+    assert [said.key for said in gather(result, evaluation=wrong).held_out] == [
+        "held-out.evaluated",
+        "held-out.unknown-arm",
+    ]
+
+
+def test_files_of_held_out_readings_have_their_hashes(result, tmp_path):
+    study = ulna.Study.load(result.parent.parent / "study.toml")
+    ulna.cross_validate(study, by=4).save(tmp_path / "cv")
+    ulna.evaluate(ulna.Arm.load(result), study).save(tmp_path / "e")
+    files = (tmp_path / "cv" / "cross-validation.json", tmp_path / "e" / "evaluation.json")
+    content = gather(result, cross_validation=files[0], evaluation=files[1])
+    digests = {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    assert {file.name: file.sha256 for file in content.provenance.beside} == digests
+    page = render(content)
+    paper = Pdf(render_pdf(content))
+    for digest in digests.values():
+        assert digest in page
+        holds(paper, digest)
 
 
 def test_wrong_files_are_told(result, tmp_path):

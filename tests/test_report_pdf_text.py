@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTCollection, TTFont
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.cli_runs import write_lengths
-from tests.pdf_reading import Pdf, holds
+from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated
 
 from ulna.document.content import Content
@@ -81,6 +82,34 @@ def test_long_words_stay_within_the_page(hostile):
         assert grey[:, :margin].min() > 250
 
 
+def test_names_get_no_hyphens(lengths):
+    word = "internationalisation"
+    pdf = Pdf(render(dataclasses.replace(gather(lengths), arm=" ".join([word] * 12))))
+    assert "".join(pdf.texts).count(word) == 12
+
+
+def test_a_long_name_of_the_laboratory_stays_on_the_page(lengths, root, tmp_path):
+    from io import BytesIO
+
+    import numpy as np
+    from PIL import Image
+
+    text = (root / "examples" / "platinum" / "laboratory.toml").read_text(encoding="utf-8")
+    given = f"Laboratory {'W' * 150}"
+    (tmp_path / "lab.toml").write_text(text.replace("Example Laboratory for Lengths", given), encoding="utf-8")
+    content = gather(lengths, laboratory=tmp_path / "lab.toml")
+    pdf = Pdf(render(content))
+    assert squeezed(given) in squeezed(pdf.texts[0])
+    assert squeezed(f"{given[:59]}…") in squeezed(pdf.texts[1])
+    data, chosen = certificate(content, "en")
+    for page in pictures(data, chosen, 72)[1:]:
+        assert np.asarray(Image.open(BytesIO(page)).convert("L"))[:14].min() > 250
+
+
+def test_rounding_is_no_mean(hostile):
+    assert not re.search(r"mean-?[\d.]+e-", Pdf(render(hostile)).all_text)
+
+
 def test_controls_and_overrides_are_seen_not_obeyed():
     assert clean("a\x07b\u202ec\u2069") == "a\ufffdb\ufffdc\ufffd"
     assert clean("a\tb\r\nc") == "a b\nc"
@@ -134,6 +163,17 @@ def test_chinese_with_the_fonts_of_a_folder(lengths, han):
     pdf = Pdf(render(content, "zh", han))
     holds(pdf, "校准报告", "未声明计量溯源性", f"第 1 页，共 {len(pdf.texts)} 页", "测量不确定度", "草稿，未签字")
     assert pdf.root["/Lang"] == "zh-CN"
+
+
+def test_no_empty_boxes_in_figures_where_the_face_is_not_the_first(lengths, han, tmp_path, monkeypatch):
+    monkeypatch.setattr(fonts, "_package", list)
+    squares = TTFont(han / "squares.ttf")
+    latin = TTFont(fonts._our_files()[0])
+    faces = TTCollection()
+    faces.fonts = [latin, squares]
+    faces.save(tmp_path / "two.ttc")
+    with pytest.raises(UlnaInputError, match=r"a figure cannot be drawn: Glyph .*one face.*--fonts"):
+        render(gather(lengths), "zh", tmp_path)
 
 
 def test_no_empty_boxes_where_no_font_has_a_sign(lengths, monkeypatch, tmp_path):

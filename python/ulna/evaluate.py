@@ -47,6 +47,7 @@ class Evaluation:
         return {
             "format": FORMAT,
             "arm": self.arm.name,
+            "parameters": dict(zip(self.arm.parameter_names, self.arm.parameters.tolist(), strict=True)),
             "artefacts": [entry.as_dict() for entry in self.artefacts],
             "overall": self.overall,
             "fit": {"readings": self.readings, "rms_mm": self.rms_mm},

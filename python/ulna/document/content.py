@@ -289,6 +289,14 @@ class FileRow:
 
 
 @dataclass(frozen=True)
+class ReadFile:
+    """A file that the report was made with, besides those of the result."""
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True)
 class Provenance:
     """From what, with what and when the result was made."""
 
@@ -302,6 +310,8 @@ class Provenance:
     """Name of the result file."""
     result_sha256: str
     files: list[FileRow]
+    beside: list[ReadFile]
+    """Laboratory file, verification, cross-validation, evaluation: those that were given."""
     options: dict[str, Any]
     warnings: list[str]
 

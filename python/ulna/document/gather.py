@@ -20,6 +20,7 @@ from ulna.document.content import (
     Provenance,
     QualityRow,
     Quiver,
+    ReadFile,
     ReadingRows,
     Said,
 )
@@ -70,7 +71,7 @@ def gather(
     test = None if verified is None else verification(verified, found, path, digest)
     source, files, no_study = find_study(found, path, study)
     at(2)
-    rows, said = held_out(found, source, cross_validation, evaluation)
+    rows, said, beside = held_out(found, source, cross_validation, evaluation)
     missing = {} if no_study is None else {"study": no_study}
     over: list[Cloud] = []
     quiver: Quiver | None = None
@@ -119,6 +120,11 @@ def gather(
             result=path.name,
             result_sha256=digest,
             files=files,
+            beside=[
+                *([] if named is None else [ReadFile(named.path.name, named.sha256)]),
+                *([] if test is None else [ReadFile(test.name, test.sha256)]),
+                *beside,
+            ],
             options=dict(made.get("options", {})),
             warnings=[str(text) for text in made.get("warnings", [])],
         ),

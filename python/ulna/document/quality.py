@@ -7,7 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ulna.document.content import QualityRow, Said, Summary
+import numpy as np
+
+from ulna.document.content import QualityRow, ReadFile, Said, Summary
+from ulna.errors import UlnaInputError
 from ulna.evaluate import study_of_arm
 from ulna.figures import Figures, figures
 from ulna.files.study import rows_to_judge
@@ -23,6 +26,8 @@ DISTRIBUTED = {
     "coordinate_error": ("coordinate_error_mean_mm", "coordinate_error_rms_mm", "coordinate_error_max_mm"),
 }
 WORST = {"form": "form_mm", "diameter_error": "diameter_error_mm"}
+#: what is said of held-out readings that weakens what they show
+CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study", "held-out.unknown-arm")
 
 
 def quality_rows(readings: str, before: Figures | None, after: Figures) -> list[QualityRow]:
@@ -59,12 +64,14 @@ def _summary(quantity: str, found: Mapping[str, float]) -> Summary | None:
 
 def held_out(
     result: Result, study: Study | None, cross_validation: Path | None, evaluation: Path | None
-) -> tuple[list[QualityRow], list[Said]]:
-    """Rows on readings that the fit has not seen, and what they are; where there are none, what would be needed.
+) -> tuple[list[QualityRow], list[Said], list[ReadFile]]:
+    """Rows on readings that the fit has not seen, and what they are; where there are none, what would be needed; and
+    the files that were read for that.
 
     Rows that the study keeps to check, groups left out in a cross-validation, an evaluation on another study. Raises
-    UlnaInputError for a file that is none of that.
+    UlnaInputError for a file that is none of that, and for an evaluation of an arm with other parameters.
     """
+    files: list[ReadFile] = []
     rows: list[QualityRow] = []
     said: list[Said] = []
     if study is not None and study.path is not None and study.rows == "fit" and rows_to_judge(study.path) == "check":
@@ -74,24 +81,47 @@ def held_out(
         rows += quality_rows("check", before, after)
         said.append(Said("held-out.check", {"readings": sum(len(group) for group in check.readings)}))
     if cross_validation is not None:
-        document, _ = read_json(cross_validation, "a cross-validation.json")
+        document, digest = read_json(cross_validation, "a cross-validation.json")
         check_format(document, cross_validation, "ulna-cross-validation")
+        files.append(ReadFile(cross_validation.name, digest))
         rows += quality_rows("left-out", document["before"], document["after"])
         values = {"by": str(document.get("by", "")), "groups": len(document["groups"]), "file": cross_validation.name}
         said.append(Said("held-out.left-out", values))
         if _sources(document) != _sources({"provenance": result.provenance}):
             said.append(Said("held-out.other-study", {"file": cross_validation.name}))
     if evaluation is not None:
-        document, _ = read_json(evaluation, "an evaluation.json")
+        document, digest = read_json(evaluation, "an evaluation.json")
         check_format(document, evaluation, "ulna-evaluation")
+        files.append(ReadFile(evaluation.name, digest))
+        same = _is_of(result.arm, document, evaluation)
         rows += quality_rows("evaluated", None, document["overall"])
         readings = sum(int(entry.get("readings", 0)) for entry in document["artefacts"])
         said.append(Said("held-out.evaluated", {"readings": readings, "file": evaluation.name}))
         if set(_sources(document)[1:]) & set(_data_sources(result.provenance)):
             said.append(Said("held-out.same-readings", {"file": evaluation.name}))
+        if not same:
+            said.append(Said("held-out.unknown-arm", {"file": evaluation.name, "arm": str(document.get("arm", "–"))}))
     if not rows:
         said.append(Said("held-out.none"))
-    return rows, said
+    return rows, said, files
+
+
+def _is_of(arm: Arm, document: Mapping[str, Any], path: Path) -> bool:
+    """Whether an evaluation is of this arm; False where it does not say, as before its key `parameters`. Raises
+    UlnaInputError where it is of another."""
+    given = document.get("parameters")
+    if not isinstance(given, dict):
+        return False
+    for name, value in zip(arm.parameter_names, arm.parameters.tolist(), strict=True):
+        other = given.get(name)
+        if not isinstance(other, int | float) or not np.isclose(other, value, rtol=1e-9, atol=1e-12):
+            shown = "missing" if other is None else f"{other}"
+            raise UlnaInputError(
+                f"{path}: is an evaluation of another arm ('{document.get('arm')}'): its parameters.{name} is {shown}, "
+                f"expected {value!r}, as in the result. Evaluate this result (ulna evaluate RESULT STUDY -o FOLDER) "
+                "and give that file."
+            )
+    return True
 
 
 def start_of(result: Result) -> Arm:

@@ -227,6 +227,8 @@ class EvaluationFile(Open):
     """An arm, unchanged, on readings: `ulna-evaluation/1`."""
 
     format: Literal["ulna-evaluation/1"]
+    parameters: dict[str, float] | None = None
+    """Name → value of the arm that was judged (mm, rad, 1/K, rad/(N m)); absent in files of earlier versions."""
     artefacts: list[ArtefactEntry]
     overall: Figures
     """Over all readings together."""

@@ -7,6 +7,7 @@ import math
 from ulna.document.content import Content, QualityRow
 from ulna.document.html.markup import name, paragraph, table, text
 from ulna.document.languages import Words
+from ulna.document.quality import CAUTIONS
 from ulna.report.digits import figure_mm
 
 
@@ -89,9 +90,7 @@ def text_of(row: QualityRow, words: Words) -> str:
 
 
 def _kind(key: str) -> str:
-    if key in ("held-out.none", "held-out.same-readings", "held-out.other-study"):
-        return "missing"
-    return ""
+    return "missing" if key in CAUTIONS else ""
 
 
 def _cells(row: QualityRow) -> list[str]:

@@ -250,4 +250,5 @@ def provenance_tables(content: Content, words: Words) -> str:
         [name(file.path), f"<code>{text(file.sha256)}</code>", words(f"state.{file.state}"), str(file.rows)]
         for file in made.files
     ]
+    rows += [[name(file.name), f"<code>{text(file.sha256)}</code>", "–", "–"] for file in made.beside]
     return page + table(heads, rows, words("section.provenance"), left=3)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -69,8 +70,18 @@ def _axes(width_mm: float, height_mm: float) -> tuple[Figure, Axes]:
 
 
 def _svg(figure: Figure) -> str:
+    """Raises UlnaInputError where a label has a sign that Matplotlib finds in no font: it reads the first of several
+    fonts in a file only."""
     file = io.StringIO()
-    figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+    with warnings.catch_warnings():
+        warnings.filterwarnings("error", message="Glyph .* missing from font")
+        try:
+            figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+        except UserWarning as warning:
+            raise UlnaInputError(
+                f"PDF: a figure cannot be drawn: {warning}. An empty box is never printed. Name a folder with a font "
+                "of one face that has this sign by --fonts, such as Noto Sans SC (OpenType)."
+            ) from None
     return file.getvalue()
 
 

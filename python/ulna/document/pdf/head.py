@@ -16,6 +16,8 @@ from ulna.files.laboratory import Laboratory
 from ulna.files.laboratory_tables import Address, ContactTable, HumidityCondition, TemperatureCondition
 from ulna.files.toml import read_bytes
 
+#: characters of the laboratory's name in the head of later pages; the first page has all of it
+LONGEST_ISSUER = 60
 _PICTURES = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpg", b"GIF8": "gif", b"RIFF": "webp"}
 
 
@@ -45,6 +47,15 @@ def issuer(content: Content, words: Words) -> str:
         return ""
     found = content.laboratory
     return name(found.spoken(found.file.laboratory.name, words.language))
+
+
+def running_issuer(content: Content, words: Words) -> str:
+    """The same for the head of the second and later pages, where it has two lines: cut where it is longer."""
+    if content.laboratory is None:
+        return ""
+    found = content.laboratory
+    given = found.spoken(found.file.laboratory.name, words.language)
+    return name(given if len(given) <= LONGEST_ISSUER else given[: LONGEST_ISSUER - 1].rstrip() + "…")
 
 
 def letterhead(content: Content, words: Words) -> list[str]:

@@ -14,6 +14,7 @@ from ulna.document.pdf.blocks import Block
 from ulna.document.pdf.fonts import Chosen, choose
 from ulna.document.pdf.text import clean, name, words_for_paper
 from ulna.document.pdf.typeset import typeset
+from ulna.report.digits import decimals, fixed
 
 #: language → region, which decides how Typst sets Chinese
 REGIONS = {"zh": "cn"}
@@ -41,7 +42,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
         "region": REGIONS.get(language),
         "title": words("paper.title") if signed else words("title"),
         "author": (head.issuer(content, words) or name(f"{made.program} {made.version}")).strip(ISOLATE + END),
-        "issuer": head.issuer(content, words) or words("title"),
+        "issuer": head.running_issuer(content, words) or words("title"),
         "number": head.identifier(content),
         "date": head.date(content),
         "program": f"{name(made.program)} {name(made.version)}",
@@ -120,7 +121,9 @@ def _distributions(content: Content, words: Words) -> list[Block]:
     found = []
     for sample in content.samples:
         said = {"artefact": sample.artefact, "kind": words(f"sample.{sample.kind}")}
-        numbers = {"count": len(sample.value_mm), "mean": sample.mean_mm, "sigma": sample.sigma_mm}
+        # the mean to the last place of the standard deviation: what is rounding is shown as zero
+        mean = fixed(sample.mean_mm, decimals(sample.sigma_mm, "mm") + 2) if sample.sigma_mm else sample.mean_mm
+        numbers = {"count": len(sample.value_mm), "mean": mean, "sigma": sample.sigma_mm}
         found.append(
             blocks.figure(figures.histogram(sample, words), words("distribution.histogram", **said, **numbers))
         )

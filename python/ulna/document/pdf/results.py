@@ -12,12 +12,12 @@ from ulna.document.languages import Words
 from ulna.document.pdf import blocks
 from ulna.document.pdf.blocks import Block, Cell
 from ulna.document.pdf.text import clean, name
+from ulna.document.quality import CAUTIONS
 from ulna.report.digits import figure_mm, rounded, small, uncertainty
 from ulna.report.identification import combination, sentence
 
 MOST_OUTLIERS = 40
 """In print; the result has all of them."""
-_CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study")
 
 
 def parameters(content: Content, words: Words) -> list[Block]:
@@ -96,7 +96,7 @@ def _directions(directions: Sequence[Mapping[str, Any]], words: Words) -> Block:
         u = f"u = {uncertainty(each['u'])} {clean(each['unit'])}" if "u" in each else ""
         shown = (words(key) if words.has(key) else name(cause)) if cause else u
         if each.get("frame"):
-            shown = f"{shown} {words('determined.frame')}"
+            shown = f"{shown}\n{words('determined.frame')}"
         said = [blocks.english(name(sentence(each[key]))) for key in ("because", "remedy")]
         rows.append([name(combination(each["combination"])), shown, *said])
     heads = [words(f"column.{key}") for key in ("combination", "cause", "because", "remedy")]
@@ -112,7 +112,7 @@ def quality(content: Content, words: Words) -> list[Block]:
         for row in content.quality
     ]
     said = [
-        blocks.paragraph(words.say(each), "missing" if each.key in _CAUTIONS else "plain") for each in content.held_out
+        blocks.paragraph(words.say(each), "missing" if each.key in CAUTIONS else "plain") for each in content.held_out
     ]
     return [
         blocks.heading(words("section.quality")),
@@ -246,12 +246,8 @@ def provenance(content: Content, words: Words) -> list[Block]:
     ]
     if made.warnings:
         facts.append((words("provenance.warnings"), [name(each) for each in made.warnings]))
-    files = [(made.result, made.result_sha256, "–")]
-    if content.laboratory is not None:
-        files.append((content.laboratory.path.name, content.laboratory.sha256, "–"))
-    if content.verification is not None:
-        files.append((content.verification.name, content.verification.sha256, "–"))
-    rows: list[list[Cell]] = [[name(path), blocks.code(digest), state] for path, digest, state in files]
+    rows: list[list[Cell]] = [[name(made.result), blocks.code(made.result_sha256), "–"]]
+    rows += [[name(file.name), blocks.code(file.sha256), "–"] for file in made.beside]
     rows += [[name(file.path), blocks.code(file.sha256), words(f"state.{file.state}")] for file in made.files]
     heads = [words(f"column.{key}") for key in ("file", "sha256", "state")]
     return [
