@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import re
 from pathlib import Path
 
@@ -86,6 +87,13 @@ def test_names_get_no_hyphens(lengths):
     word = "internationalisation"
     pdf = Pdf(render(dataclasses.replace(gather(lengths), arm=" ".join([word] * 12))))
     assert "".join(pdf.texts).count(word) == 12
+
+
+def test_what_is_copied_has_no_places_to_break(hostile):
+    texts = "".join(Pdf(render(hostile)).texts)
+    assert "\u200b" in json.dumps(certificate(hostile, "en")[0], ensure_ascii=False)
+    assert "result.json" in texts
+    assert "\u200b" not in texts
 
 
 def test_a_long_name_of_the_laboratory_stays_on_the_page(lengths, root, tmp_path):
