@@ -16,6 +16,7 @@ from tests.test_document_html import Page, figures
 from ulna import UlnaInputError
 from ulna.document.gather import gather
 from ulna.document.html.page import render
+from ulna.document.tested import wholes
 
 #: length, error, guard → verdict, with MPE = 0.02 + L / 50000 by hand: 0.022 at 100 mm, 0.04 at 1000 mm
 VALUES = [
@@ -139,6 +140,26 @@ def test_the_page_says_what_was_decided_and_how(result, tmp_path, language, word
     for part in (*words, "E_Uni:Tact.AArm", "L - L_cal", "test 'bi' was not measured.", "<b>block</b>", "the fixture"):
         assert part in text, part
     assert "No statement of conformity" not in text
+
+
+def test_the_whole_is_said_of_each_state_and_of_what_was_measured(result, tmp_path):
+    """An arm that failed as found and passes as left: neither word stands for the other; tests that were not measured
+    and figures without a verdict are counted beside it."""
+    path = verified(result, tmp_path)
+    made = json.loads(path.read_text(encoding="utf-8"))
+    left = json.loads(json.dumps(made["states"][0]))
+    made["states"][0]["state"], left["state"] = "as-found", "as-left"
+    left["verdict"] = left["tests"][0]["verdict"] = "pass"
+    made["states"].append(left)
+    path.write_text(json.dumps(made), encoding="utf-8")
+    content = gather(result, verified=path)
+    assert content.verification is not None
+    found = [(each.state, each.verdict) for each in wholes(content.verification.file)]
+    assert found == [("as-found", "fail"), ("as-left", "pass")]
+    text = "".join(Page(render(content)).words)
+    assert "On the whole: FAIL (as found)." in text
+    assert "On the whole: pass (as left)." in text
+    assert "not measured (1)" in text
 
 
 def test_a_limit_without_a_slope_is_a_line_too(result, tmp_path):

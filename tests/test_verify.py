@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from tests.acceptance import iso_rows, write_plan
+from tests.cli_runs import run
 from tests.test_files_schema import FOLDER, _known
 
 import ulna
@@ -69,6 +70,11 @@ def test_what_differs_from_the_profile_is_told(found: Verification) -> None:
         "each.",
         "test 'bi' (E_Bi) was not measured.",
     ]
+
+
+def test_a_verdict_says_what_it_is_not_about(tmp_path: Path) -> None:
+    done = run("verify", write_plan(tmp_path / "part"))
+    assert "as-left FAIL (1 of the profile's tests not measured)." in " ".join(done.stdout.split())
 
 
 def test_a_short_bar_and_an_unstated_range_are_told(tmp_path: Path) -> None:

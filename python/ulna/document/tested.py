@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from ulna.document.content import Said, TestedLengths, Verification
 from ulna.files.toml import read_bytes, sha256
-from ulna.files.verification import TestedTable, load_verification
+from ulna.files.verification import TestedTable, VerificationFile, load_verification
 from ulna.result import Result
 
 F64 = NDArray[np.float64]
@@ -83,3 +84,28 @@ def limit_lines(found: TestedLengths) -> tuple[F64, F64, F64] | None:
     guard = np.concatenate([guard[:1], guard, guard[-1:]])
     limit = np.full(len(x), found.a_mm) if found.b is None else found.a_mm + x / found.b
     return x, limit, guard
+
+
+@dataclass(frozen=True)
+class Whole:
+    """What is said of one state of the arm on the whole, and of what nothing is said."""
+
+    state: str
+    verdict: str | None
+    unmeasured: int
+    """Tests of the profile."""
+    silent: int
+    """Figures without a verdict."""
+
+
+def wholes(found: VerificationFile) -> list[Whole]:
+    """Of each state: as found and as left are judged by themselves."""
+    return [
+        Whole(
+            state.state,
+            state.verdict,
+            len(state.departures),
+            sum(figure.verdict is None for test in state.tests for figure in test.figures),
+        )
+        for state in found.states
+    ]

@@ -8,11 +8,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from ulna.errors import UlnaInputError, nearest
+from ulna.errors import UlnaInputError
 from ulna.files.arm import check_name
 from ulna.files.features import COLUMNS, open_features, uncertainties
 from ulna.files.layout import TableKeys
-from ulna.files.models import Strict
+from ulna.files.models import Strict, check_kind
 from ulna.files.table import file_sha256, read_table
 from ulna.files.units import Units
 from ulna.study import Artefact, InputFile
@@ -119,14 +119,7 @@ def check_kinds(document: dict[str, Any], path: Path) -> None:
     """The kinds of all artefacts, before the rest of the tables is looked at. Raises UlnaInputError."""
     tables = document.get("artefact")
     for name, table in tables.items() if isinstance(tables, dict) else ():
-        if not isinstance(table, dict):
-            continue
-        kind = table.get("kind")
-        key = f"{path}: key 'artefact.{name}.kind'"
-        if kind is None:
-            raise UlnaInputError(f"{key} is missing; expected one of {', '.join(KINDS)}. Add it.")
-        if kind not in KINDS:
-            raise UlnaInputError(f"{key}: got {kind!r}; expected one of {', '.join(KINDS)}.{nearest(str(kind), KINDS)}")
+        check_kind(table, f"artefact.{name}", KINDS, path)
 
 
 def make_artefact(

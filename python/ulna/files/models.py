@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import typing
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -35,6 +36,22 @@ def fill(model: type[Model], document: Any, path: Path) -> Model:
         count = len(details) - 1
         more = f" {count} more problem{'s follow' if count > 1 else ' follows'}." if count else ""
         raise UlnaInputError(f"{path}: {_explain(first, model)}{more}") from None
+
+
+def check_kind(table: Any, key: str, known: Sequence[str], path: Path) -> None:
+    """What kind a table is of, before its other keys are looked at. Raises UlnaInputError where none knows it."""
+    if not isinstance(table, dict):
+        return
+    kind = table.get("kind")
+    expected = f"{', '.join(known[:-1])} or {known[-1]}"
+    if kind is None:
+        raise UlnaInputError(f"{path}: key '{key}.kind' is missing; expected {expected}. Add it.")
+    if kind not in known:
+        hint = nearest(str(kind), known)
+        raise UlnaInputError(
+            f"{path}: key '{key}.kind': got {kind!r}, expected {expected}."
+            + (hint if "Did you mean" in hint else " Correct it.")
+        )
 
 
 def _explain(detail: ErrorDetails, model: type[BaseModel]) -> str:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
-from ulna.errors import UlnaInputError, nearest
+from ulna.errors import UlnaInputError
 from ulna.files.checks import named_probe
-from ulna.files.models import Strict, fill
+from ulna.files.models import Strict, check_kind, fill
 from ulna.files.simulation import encoder_of, travel_of
 from ulna.files.simulation_tables import PositiveEach, TravelTable
 from ulna.files.toml import check_format, read_toml
@@ -140,13 +140,7 @@ def read_performance(path: Path, arm: Arm) -> StatedPerformance:
     document, _ = read_toml(path, WHAT)
     check_format(document, path, "ulna-performance")
     for number, table in enumerate(document.get("test", []) if isinstance(document.get("test"), list) else [], 1):
-        kind = table.get("kind") if isinstance(table, dict) else None
-        if kind not in ("point", "length", "sphere"):
-            hint = nearest(str(kind), ("point", "length", "sphere"))
-            raise UlnaInputError(
-                f"{path}: key 'test.{number}.kind': got {kind!r}, expected 'point', 'length' or 'sphere'."
-                + (hint if "Did you mean" in hint else " Correct it.")
-            )
+        check_kind(table, f"test.{number}", ("point", "length", "sphere"), path)
     file = fill(PerformanceFile, document, path)
     low, high = file.spread.factor
     if not low < high:

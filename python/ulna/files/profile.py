@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.errors import UlnaInputError, nearest
-from ulna.files.models import fill
+from ulna.files.models import check_kind, fill
 from ulna.files.profile_tables import KINDS, ProfileFile
 from ulna.files.toml import check_format, read_toml
 
@@ -99,9 +99,4 @@ def _merged(under: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
 def _check_kinds(document: dict[str, Any], path: Path) -> None:
     tests = document.get("test")
     for name, table in tests.items() if isinstance(tests, dict) else ():
-        kind = table.get("kind") if isinstance(table, dict) else None
-        if isinstance(table, dict) and kind not in KINDS:
-            raise UlnaInputError(
-                f"{path}: key 'test.{name}.kind': got {kind!r}, expected {', '.join(KINDS[:-1])} or {KINDS[-1]}."
-                f"{nearest(str(kind), KINDS)} Correct it."
-            )
+        check_kind(table, f"test.{name}", KINDS, path)

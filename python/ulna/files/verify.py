@@ -8,7 +8,7 @@ from typing import Any
 
 from ulna.errors import UlnaInputError, nearest
 from ulna.files.arm import load_arm_and_hash
-from ulna.files.models import fill
+from ulna.files.models import check_kind, fill
 from ulna.files.profile import Profile, load_profile
 from ulna.files.toml import check_format, read_toml
 from ulna.files.touches import Setting, Touches, read_touches
@@ -83,12 +83,7 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
 def _check_kinds(document: dict[str, Any], path: Path) -> None:
     artefacts = document.get("artefact")
     for name, table in artefacts.items() if isinstance(artefacts, dict) else ():
-        kind = table.get("kind") if isinstance(table, dict) else None
-        if isinstance(table, dict) and kind not in ARTEFACT_KINDS:
-            raise UlnaInputError(
-                f"{path}: key 'artefact.{name}.kind': got {kind!r}, expected ball or length."
-                f"{nearest(str(kind), ARTEFACT_KINDS)} Correct it."
-            )
+        check_kind(table, f"artefact.{name}", ARTEFACT_KINDS, path)
 
 
 def _check_labels(touches: Touches, file: VerifyFile, profile: Profile, path: Path) -> None:

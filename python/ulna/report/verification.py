@@ -109,11 +109,15 @@ def _not_passed(found: Verification) -> list[RenderableType]:
 
 
 def _whole(state: StateResult) -> str:
-    """The verdict of a state, and of how many figures nothing is said."""
+    """The verdict of a state, and of how many figures and tests nothing is said."""
     silent = sum(figure.verdict is None for figure in state.figures.values())
     if state.verdict is None:
         return "without a verdict"
-    return WORDS[state.verdict] + (f" ({silent} of {len(state.figures)} figures without a verdict)" if silent else "")
+    nothing_said = [
+        *([f"{silent} of {len(state.figures)} figures without a verdict"] if silent else []),
+        *([f"{len(state.departures)} of the profile's tests not measured"] if state.departures else []),
+    ]
+    return WORDS[state.verdict] + (f" ({'; '.join(nothing_said)})" if nothing_said else "")
 
 
 def _departures(state: StateResult) -> list[str]:

@@ -84,9 +84,9 @@ TESTS: dict[str, tuple[str, str, str]] = {
         "未规定限值：不作符合性声明。",
     ),
     "whole-pass": (
-        "{title}: all values conform. {rule}",
-        "{title}: Alle Werte sind konform. {rule}",
-        "{title}：所有值均符合。{rule}",
+        "{title}: all values with a limit conform. {rule}",
+        "{title}: Alle Werte mit einer Grenze sind konform. {rule}",
+        "{title}：所有有限值的值均符合。{rule}",
     ),
     "whole-fail": (
         "{title}: at least one value does not conform. {rule}",

@@ -8,7 +8,7 @@ from ulna.document.content import Content, TestedLengths, Verification
 from ulna.document.html.markup import name, paragraph, table, text
 from ulna.document.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, line, points
 from ulna.document.languages import Words
-from ulna.document.tested import limit_lines
+from ulna.document.tested import limit_lines, wholes
 from ulna.files.verification import FigureTable, TestedTable
 from ulna.report.digits import figure_mm, uncertainty
 
@@ -118,9 +118,14 @@ def decision(content: Content, words: Words) -> str:
         return paragraph(words("decision.none"))
     file = found.file
     page = paragraph(words(f"rule.{file.decision.rule}", k=f"{file.decision.k:g}"))
-    verdict = words(f"conformity.{file.verdict or 'none'}")
-    kind = {"pass": "ending", "fail": "ending bad", "undecided": "missing", None: "missing"}[file.verdict]
-    return page + paragraph(words("decision.whole", verdict=verdict), kind)
+    kinds = {"pass": "ending", "fail": "ending bad", "undecided": "missing", None: "missing"}
+    for whole in wholes(file):
+        verdict = words(f"conformity.{whole.verdict or 'none'}")
+        said = words("decision.whole", verdict=verdict, state=words(f"state.{whole.state}"))
+        page += paragraph(said, kinds[whole.verdict])
+        if whole.unmeasured or whole.silent:
+            page += paragraph(words("decision.partial", unmeasured=whole.unmeasured, silent=whole.silent), "missing")
+    return page
 
 
 def tested_lengths_plot(number: int, found: TestedLengths, page: Words, words: Words) -> Plot:

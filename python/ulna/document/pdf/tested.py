@@ -7,6 +7,7 @@ from ulna.document.languages import Words
 from ulna.document.pdf import blocks, figures
 from ulna.document.pdf.blocks import Block, Cell
 from ulna.document.pdf.text import name
+from ulna.document.tested import wholes
 from ulna.files.verification import FigureTable
 from ulna.report.digits import figure_mm, rounded, uncertainty
 
@@ -80,10 +81,13 @@ def decision(content: Content, words: Words) -> list[Block]:
     if found is None:
         return [*page, blocks.paragraph(words("decision.none"))]
     chosen = found.file.decision
-    verdict = words(f"conformity.{found.file.verdict or 'none'}")
-    style = {"pass": "plain", "fail": "bad", "undecided": "missing", None: "missing"}[found.file.verdict]
-    return [
-        *page,
-        blocks.paragraph(words(f"rule.{chosen.rule}", k=f"{chosen.k:g}")),
-        blocks.paragraph(words("decision.whole", verdict=verdict), style),
-    ]
+    page.append(blocks.paragraph(words(f"rule.{chosen.rule}", k=f"{chosen.k:g}")))
+    styles: dict[str | None, str] = {"pass": "plain", "fail": "bad", "undecided": "missing", None: "missing"}
+    for whole in wholes(found.file):
+        verdict = words(f"conformity.{whole.verdict or 'none'}")
+        said = words("decision.whole", verdict=verdict, state=words(f"state.{whole.state}"))
+        page.append(blocks.paragraph(said, styles[whole.verdict]))
+        if whole.unmeasured or whole.silent:
+            partial = words("decision.partial", unmeasured=whole.unmeasured, silent=whole.silent)
+            page.append(blocks.paragraph(partial, "missing"))
+    return page
