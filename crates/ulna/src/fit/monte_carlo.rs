@@ -156,7 +156,7 @@ fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Res
 /// Standard uncertainty of every parameter; NaN where held or not determined.
 fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[f64]) -> Result<Vec<f64>> {
     let judged = judge(problem, free, pins, parameters, &Unwatched)?;
-    let considered = problem.considered_u_mm(free);
+    let considered = problem.considered_u(free);
     let covariance = covariance(&judged.decomposition, &judged.triangle, 1.0, &considered);
     let lost = judged.decomposition.lost();
     let mut u = vec![f64::NAN; parameters.len()];
