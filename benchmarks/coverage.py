@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 import ulna
-from ulna.model import Arm
+from ulna.arm.model import Arm
+from ulna.calibration.recalibrations import recalibrations
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
-from ulna.study import Study
-from ulna.uncertainty.assess import Assessment, assess
-from ulna.uncertainty.measurands import Touched
-from ulna.uncertainty.regions import contains
-from ulna.uncertainty.task import Task
-from ulna.virtual.arm import VirtualArm
-from ulna.work.recalibrations import recalibrations
+from ulna.simulation.reading_errors import VirtualArm
+from ulna.study.data import Study
+from ulna.uncertainties.assess import Assessment, assess
+from ulna.uncertainties.measurands import Touched
+from ulna.uncertainties.regions import contains
+from ulna.uncertainties.task import Task
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "benchmarks" / "coverage.md"
 BALL_MM = 30.0

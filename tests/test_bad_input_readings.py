@@ -11,7 +11,7 @@ import pytest
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
 from ulna import UlnaInputError
-from ulna.files.table import iter_tables, read_header, read_table
+from ulna.formats.table import iter_tables, read_header, read_table
 
 CELLS: dict[str, tuple[int, str, str, tuple[str, ...]]] = {
     "no number": (3, "q2", "x", ("row 3 (line 4", "column 'q2'", "got 'x'", "expected a number")),

@@ -13,7 +13,7 @@ from tests.small_study import ARM, says
 
 import ulna
 from ulna import Arm, UlnaInputError
-from ulna.files.arm import arm_document
+from ulna.arm.file import arm_document
 
 NAMES = ["joint.1.a", "joint.2.d", "probe.bent.x"]
 ROOT = np.random.default_rng(1).normal(0, 1e-3, (3, 2))  # of rank 2: on the edge of what is allowed

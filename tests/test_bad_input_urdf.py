@@ -9,9 +9,9 @@ import pytest
 from tests.small_study import says
 
 from ulna import Arm, UlnaInputError
-from ulna.importers.urdf import import_urdf
-from ulna.urdf.arm import arm_from_chain
-from ulna.urdf.chain import read_chain
+from ulna.exchange.importers.urdf import import_urdf
+from ulna.exchange.urdf.arm import arm_from_chain
+from ulna.exchange.urdf.chain import read_chain
 
 URDF = """<?xml version="1.0"?>
 <robot name="two" xmlns:xacro="http://www.ros.org/wiki/xacro">

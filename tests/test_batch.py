@@ -10,7 +10,7 @@ import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
-from ulna.batch import studies_in
+from ulna.calibration.batch import studies_in
 
 
 @pytest.fixture

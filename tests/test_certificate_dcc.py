@@ -29,7 +29,7 @@ from tests.certificates import (
     without_noise,
 )
 
-from ulna.certificate.dcc.document import dcc_certificate
+from ulna.documents.dcc.document import dcc_certificate
 
 
 @pytest.fixture

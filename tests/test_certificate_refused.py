@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from tests.certificates import MINIMAL, document, make, nasty, without_noise
 
-from ulna.certificate.dcc.document import dcc_certificate
-from ulna.errors import UlnaInputError
+from ulna.documents.dcc.document import dcc_certificate
+from ulna.ground.errors import UlnaInputError
 
 
 @pytest.fixture

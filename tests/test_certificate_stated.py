@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ulna import Result
-from ulna.certificate.stated import stated_parameters
+from ulna.documents.certified.parameters import stated_parameters
 
 RESULT = Path(__file__).resolve().parent / "data" / "fossils" / "result-1.json"
 TRIALS = 40_000

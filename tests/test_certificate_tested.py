@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests import dcc_reading as reading
 
-from ulna.certificate.dcc.document import dcc_certificate
-from ulna.certificate.tested import SingleValue, StatedTest, StatedTests
+from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests
+from ulna.documents.dcc.document import dcc_certificate
 
 HERE = Path(__file__).resolve().parent
 RESULT = HERE / "data" / "fossils" / "result-1.json"

@@ -13,8 +13,8 @@ from tests import dcc_reading as reading
 from tests.certificates import EXAMPLE, RESULT
 from tests.cli_runs import assert_bad_input, run
 
-from ulna.certificate.dcc.document import dcc_certificate
-from ulna.errors import UlnaInputError
+from ulna.documents.dcc.document import dcc_certificate
+from ulna.ground.errors import UlnaInputError
 
 SHA256 = hashlib.sha256(RESULT.read_bytes()).hexdigest()
 START = next(

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.dcc_reading import exponents
 
-from ulna.certificate.dcc.administrative import release
-from ulna.certificate.dcc.quantities import label, number, plain
-from ulna.certificate.dcc.units import dsi_product, dsi_unit
-from ulna.certificate.dcc.words import entries
-from ulna.certificate.stated import last_place
+from ulna.documents.certified.parameters import last_place
+from ulna.documents.dcc.administrative import release
+from ulna.documents.dcc.quantities import label, number, plain
+from ulna.documents.dcc.units import dsi_product, dsi_unit
+from ulna.documents.dcc.words import entries
 
 UNITS = ("mm", "rad", "1/K", "rad/(N m)")
 

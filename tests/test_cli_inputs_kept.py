@@ -12,7 +12,7 @@ import pytest
 from tests.cli_runs import assert_bad_input, platinum, run, write_lengths
 
 import ulna
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 
 
 def contents(folder: Path) -> dict[str, bytes]:

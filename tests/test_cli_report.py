@@ -12,19 +12,19 @@ import polars as pl
 import pytest
 from rich.console import Console
 
+from ulna.arm.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.arm.probes import probe_views
+from ulna.calibration.cross_validate import CrossValidation, GroupFigures
+from ulna.calibration.extras import JudgedExtra
+from ulna.calibration.figures import NAMES, PlacementFigures
+from ulna.calibration.identify import Identification
+from ulna.calibration.result import FitSummary, Parameter, Result
 from ulna.cli import output
-from ulna.cross_validate import CrossValidation, GroupFigures
-from ulna.extras import JudgedExtra
-from ulna.figures import NAMES, PlacementFigures
-from ulna.identify import Identification
-from ulna.model import Arm, Joint, ParameterCovariance, Probe
-from ulna.probes import probe_views
-from ulna.report.calibration import calibration_report, equations, where_to_look
-from ulna.report.cross_validation import cross_validation_report
-from ulna.report.digits import decimals, figure_mm, fixed, quantity, uncertainty
-from ulna.report.figures import per_placement
-from ulna.report.identification import combination, determined_in_words
-from ulna.result import FitSummary, Parameter, Result
+from ulna.cli.printed.calibration import calibration_report, equations, where_to_look
+from ulna.cli.printed.cross_validation import cross_validation_report
+from ulna.cli.printed.figures import per_placement
+from ulna.cli.printed.identification import combination, determined_in_words
+from ulna.ground.digits import decimals, figure_mm, fixed, quantity, uncertainty
 
 
 def parameter(name: str, unit: str, value: float, u: float | None, status: str = "fitted") -> Parameter:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ulna.errors import UlnaInputError
-from ulna.folds import Fold, folds
-from ulna.study import Artefact, FitOptions, Readings, Study
+from ulna.calibration.folds import Fold, folds
+from ulna.ground.errors import UlnaInputError
+from ulna.study.data import Artefact, FitOptions, Readings, Study
 
 ARM: Any = SimpleNamespace()
 BAR = Artefact("bar", "bar", {"A": (0.0, 0.0, 0.0), "B": (100.0, 0.0, 0.0)}, length_mm=100.0)

@@ -12,9 +12,9 @@ import polars as pl
 import pytest
 
 import ulna
-from ulna.errors import InputWarning, UlnaInputError
-from ulna.measure import measure_to_stream
-from ulna.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.arm.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.measuring.measure import measure_to_stream
 
 PROBES = {"bent": Probe(35.0, -16.0, 224.0), "straight": Probe(0.0, 0.0, 238.0)}
 

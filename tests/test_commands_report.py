@@ -10,7 +10,7 @@ from tests.cli_runs import assert_bad_input, run, write_lengths
 from tests.reports import calibrated
 from tests.test_document_html import Page, figures
 
-from ulna.importers.mukca import import_mukca
+from ulna.exchange.importers.mukca import import_mukca
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from ulna.errors import UlnaInputError
-from ulna.files.table import count_rows, read_header, stream
+from ulna.formats.table import count_rows, read_header, stream
+from ulna.ground.errors import UlnaInputError
 
 Q = ["q1", "q2", "q3"]
 

@@ -19,11 +19,11 @@ from tests.test_export_urdf import _arm as of_oracle
 from tests.urdf_texts import poses
 
 from ulna import Arm, Joint, Probe, UlnaInputError
-from ulna.export.dh import dh_table
-from ulna.export.urdf import urdf_text
-from ulna.frames.links import link_at_zero, moved
-from ulna.importers.dh import import_dh
-from ulna.importers.robots import panda, ur10
+from ulna.arm.frames.links import link_at_zero, moved
+from ulna.exchange.export.dh import dh_table
+from ulna.exchange.export.urdf import urdf_text
+from ulna.exchange.importers.dh import import_dh
+from ulna.exchange.importers.robots import panda, ur10
 
 CONVENTIONS = ("dh", "modified-dh")
 FREE_OF_BETA = [name for name in arms.ALL if name not in ("parallel axes", "nine joints")]

@@ -18,13 +18,13 @@ from tests.cli_runs import write_lengths
 from tests.reports import HOSTILE, calibrated, seats_study
 
 import ulna
-from ulna.document.content import Content, Quiver, ReadingRows, Said
-from ulna.document.distribution import _sample
-from ulna.document.gather import gather
-from ulna.document.html.markup import in_figure, json_in_script, number, prose
-from ulna.document.html.page import render
-from ulna.document.languages import LANGUAGES, dictionary
-from ulna.figures import PlacementFigures
+from ulna.calibration.figures import PlacementFigures
+from ulna.documents.content import Content, Quiver, ReadingRows, Said
+from ulna.documents.distribution import _sample
+from ulna.documents.gather import gather
+from ulna.documents.html.markup import in_figure, json_in_script, number, prose
+from ulna.documents.html.page import render
+from ulna.documents.languages.words import LANGUAGES, dictionary
 
 DOCUMENT = Path(ulna.__file__).parent / "document"
 MEGABYTES_10 = 10_000_000

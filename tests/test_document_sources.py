@@ -17,9 +17,9 @@ from tests.test_document_html import Page
 
 import ulna
 from ulna import UlnaInputError
-from ulna.document.gather import gather
-from ulna.document.html.page import render
-from ulna.document.pdf.render import render as render_pdf
+from ulna.documents.gather import gather
+from ulna.documents.html.page import render
+from ulna.documents.pdf.render import render as render_pdf
 
 FOSSILS = Path(__file__).resolve().parent / "data" / "fossils"
 

@@ -14,9 +14,9 @@ from tests.reports import calibrated
 from tests.test_document_html import Page, figures
 
 from ulna import UlnaInputError
-from ulna.document.gather import gather
-from ulna.document.html.page import render
-from ulna.document.tested import wholes
+from ulna.documents.acceptance import wholes
+from ulna.documents.gather import gather
+from ulna.documents.html.page import render
 
 #: length, error, guard → verdict, with MPE = 0.02 + L / 50000 by hand: 0.022 at 100 mm, 0.04 at 1000 mm
 VALUES = [

@@ -10,8 +10,8 @@ from tests.foreign_tables import WRITERS, dialect
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
 from ulna import UlnaInputError
-from ulna.files.layout import Layout
-from ulna.files.table import read_header, read_table, stream
+from ulna.formats.layout import Layout
+from ulna.formats.table import read_header, read_table, stream
 
 TABLE = pl.read_csv(BARS.encode())
 SEMICOLONS = BARS.replace(",", ";").replace(".", ",")

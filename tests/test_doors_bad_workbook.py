@@ -16,7 +16,7 @@ from tests.foreign_tables import second_sheet, sheet
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
 from ulna import UlnaInputError
-from ulna.files.tables.workbook_cell import address
+from ulna.formats.tables.workbook_cell import address
 
 TABLE = pl.read_csv(BARS.encode())
 Edit = Callable[[Any], object]

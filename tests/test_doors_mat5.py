@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ulna.files.tables.mat5 import DamagedError, Strange, Struct, entries, value
+from ulna.formats.tables.mat5 import DamagedError, Strange, Struct, entries, value
 
 DTYPES = st.sampled_from(["f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "?"])
 ARRAYS = DTYPES.flatmap(

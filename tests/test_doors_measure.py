@@ -14,9 +14,9 @@ from tests.foreign_tables import WRITERS, dialect, sheet
 
 import ulna
 from ulna import InputWarning, UlnaInputError
-from ulna.files.layout import Layout
-from ulna.files.table import read_header, stream
-from ulna.measure import measure_to_stream
+from ulna.formats.layout import Layout
+from ulna.formats.table import read_header, stream
+from ulna.measuring.measure import measure_to_stream
 
 Q = np.random.default_rng(5).uniform(-3, 3, (60, 7)).round(9)
 TABLE = pl.DataFrame({f"q{k + 1}": Q[:, k] for k in range(7)}).with_columns(id=pl.Series([f"n{k}" for k in range(60)]))

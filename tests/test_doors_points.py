@@ -13,8 +13,8 @@ from tests.small_study import ARM, BARS, STUDY, SmallStudy, says
 
 import ulna
 from ulna import InputWarning, Study
-from ulna.importers.ipa import import_ipa_ur10
-from ulna.importers.robots import ur10
+from ulna.exchange.importers.ipa import import_ipa_ur10
+from ulna.exchange.importers.robots import ur10
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 XYZ = np.random.default_rng(3).uniform(-900, 900, (8, 3)).round(4)

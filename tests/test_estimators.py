@@ -13,10 +13,10 @@ from tests.oracle.published import table_4
 from tests.small_study import SmallStudy, says
 
 import ulna
-from ulna.assembly import assemble
-from ulna.estimators import search_box
-from ulna.model import Arm, Joint, Probe
-from ulna.study import Artefact, FitOptions, Noise, Readings, Study
+from ulna.arm.model import Arm, Joint, Probe
+from ulna.calibration.estimators import search_box
+from ulna.study.assembly import assemble
+from ulna.study.data import Artefact, FitOptions, Noise, Readings, Study
 
 METHODS = ["annealing", "evolution"]
 

@@ -18,10 +18,10 @@ from tests.small_study import says
 from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
 
 from ulna import Arm, Probe, UlnaInputError
-from ulna.export.template import Filled, export_template, remarks, summary
-from ulna.frames.links import link_at_zero, link_between
-from ulna.urdf.arm import arm_from_chain
-from ulna.urdf.chain import read_chain
+from ulna.arm.frames.links import link_at_zero, link_between
+from ulna.exchange.export.template import Filled, export_template, remarks, summary
+from ulna.exchange.urdf.arm import arm_from_chain
+from ulna.exchange.urdf.chain import read_chain
 
 DRAWINGS = Path(__file__).parents[2] / "shared" / "data" / "mukca" / "nominal_urdf"
 needs_drawings = pytest.mark.skipif(not DRAWINGS.is_dir(), reason="the drawings of ../shared/data are not there")

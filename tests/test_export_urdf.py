@@ -17,10 +17,10 @@ from tests.small_study import says
 from tests.urdf_texts import Made, chains, poses, urdf, write
 
 from ulna import Arm, Joint, Probe, UlnaInputError
-from ulna.export.source import not_carried, read_source, remark_not_carried
-from ulna.export.urdf import urdf_text
-from ulna.urdf.arm import arm_from_chain
-from ulna.urdf.chain import read_chain
+from ulna.exchange.export.source import not_carried, read_source, remark_not_carried
+from ulna.exchange.export.urdf import urdf_text
+from ulna.exchange.urdf.arm import arm_from_chain
+from ulna.exchange.urdf.chain import read_chain
 
 FOSSILS = Path(__file__).parent / "data" / "fossils"
 
@@ -127,14 +127,14 @@ def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> No
         "arm.toml: a URDF has no place for harmonics of joint 2, compliance",
         "differ from the arm's",
     )
-    monkeypatch.setattr("ulna.export.source.not_carried", lambda arm: [f"{arm.n} springs"])
+    monkeypatch.setattr("ulna.exchange.export.source.not_carried", lambda arm: [f"{arm.n} springs"])
     assert "4 springs" in read_source(FOSSILS / "arm-1.toml", "a URDF").remarks[0]
 
 
 def test_a_sign_that_is_not_known_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     unknown = _arm(arms.elbow())
     unknown = replace(unknown, joints=(replace(unknown.joints[0], sign=0), *unknown.joints[1:]))
-    monkeypatch.setattr("ulna.export.source.load_arm", lambda _: unknown)
+    monkeypatch.setattr("ulna.exchange.export.source.load_arm", lambda _: unknown)
     with pytest.raises(UlnaInputError) as caught:
         read_source(Path("arm.toml"), "a URDF")
     says(str(caught.value), "arm.toml: key 'joint.1.sign': got 0", "expected 1 or -1", "Calibrate first")

@@ -13,10 +13,10 @@ import pytest
 from tests.cli_runs import platinum, run
 
 import ulna
-from ulna.effects import Effects
-from ulna.extras import compared
-from ulna.model import Arm
-from ulna.study import Artefact, FitOptions, Prior, Readings, Study
+from ulna.arm.effects.effects import Effects
+from ulna.arm.model import Arm
+from ulna.calibration.extras import compared
+from ulna.study.data import Artefact, FitOptions, Prior, Readings, Study
 
 PLATE = {f"s{k}": (100.0 * (k % 3), 100.0 * (k // 3), 3.0 * k) for k in range(9)}
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ulna.figures import MOST_PAIRED_SEATS, figures, over_groups
-from ulna.study import Artefact, Readings, Study
+from ulna.calibration.figures import MOST_PAIRED_SEATS, figures, over_groups
+from ulna.study.data import Artefact, Readings, Study
 
 # An "arm" whose tip is simply its first three readings, in mm: the figures see tips only.
 GANTRY: Any = SimpleNamespace(

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.small_study import ARM
 
 from ulna import Arm, Joint, Probe, UlnaInputError
-from ulna.files.arm import arm_toml, load_arm
+from ulna.arm.file import arm_toml, load_arm
 
 
 def _load(tmp_path: Path, text: str) -> Arm:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from ulna.errors import UlnaInputError
-from ulna.files.iso_codes import COUNTRIES, LANGUAGES, SLIPS
-from ulna.files.laboratory import load_laboratory
-from ulna.files.laboratory_tables import LaboratoryFile
-from ulna.files.laboratory_template import TEMPLATE
-from ulna.files.laboratory_texts import unwritable
+from ulna.documents.laboratory.file import load_laboratory
+from ulna.documents.laboratory.iso_codes import COUNTRIES, LANGUAGES, SLIPS
+from ulna.documents.laboratory.tables import LaboratoryFile
+from ulna.documents.laboratory.template import TEMPLATE
+from ulna.documents.laboratory.texts import unwritable
+from ulna.ground.errors import UlnaInputError
 
 HERE = Path(__file__).resolve().parent
 EXAMPLE = HERE.parent / "examples" / "platinum" / "laboratory.toml"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ulna import UlnaInputError
-from ulna.files.output import check_output, new_file, output_folder, write_file
+from ulna.formats.output import check_output, new_file, output_folder, write_file
 
 NAMES = ("result.json", "arm.toml")
 

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 from tests.small_study import ARM, STUDY
-
-from ulna.files.schema import MODELS, schemas
+from tools.schemas import MODELS, schemas
 
 FOLDER = Path(__file__).parents[1] / "schemas"
 FOSSILS = Path(__file__).parent / "data" / "fossils"
@@ -20,7 +19,7 @@ FOSSILS = Path(__file__).parent / "data" / "fossils"
 def test_a_committed_schema_is_what_the_models_say(name: str) -> None:
     fresh = json.loads(schemas()[name])
     committed = json.loads((FOLDER / name).read_text(encoding="utf-8"))
-    assert committed == fresh, f"schemas/{name} is stale: run python -m ulna.files.schema"
+    assert committed == fresh, f"schemas/{name} is stale: run make schemas"
 
 
 def test_no_schema_is_left_over() -> None:

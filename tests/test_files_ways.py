@@ -11,7 +11,7 @@ from tests.small_study import ARM, SmallStudy, says
 
 import ulna
 from ulna import Arm, UlnaInputError
-from ulna.assembly import assemble
+from ulna.study.assembly import assemble
 
 MIXED = """\
 format = "ulna-study/1"

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from ulna import Joint
-from ulna.frames.links import link_at_zero, link_between
-from ulna.frames.rigid import apart, from_rpy, smallest_turn, to_rpy
+from ulna.arm.frames.links import link_at_zero, link_between
+from ulna.arm.frames.rigid import apart, from_rpy, smallest_turn, to_rpy
 
 quarter = st.integers(-2, 2).map(lambda k: k * math.pi / 2)
 noise = st.sampled_from([0.0, 1e-16, -1e-15, 1e-13, -1e-10, 1e-7, 1e-4])

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 from scipy.spatial.transform import Rotation
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.circle import fit_circle
 from ulna.geometry.enclosing import enclosing_sphere
 from ulna.geometry.line import fit_line
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 
 F64 = NDArray[np.float64]
 

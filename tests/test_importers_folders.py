@@ -10,8 +10,8 @@ import pytest
 from typer.testing import CliRunner
 
 from ulna import InputWarning, Study, UlnaInputError
-from ulna.importers.ipa import JOINTS, import_ipa_ur10
-from ulna.importers.mukca import import_mukca
+from ulna.exchange.importers.ipa import JOINTS, import_ipa_ur10
+from ulna.exchange.importers.mukca import import_mukca
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 needs_data = pytest.mark.skipif(not DATA.is_dir(), reason="the measurements of ../shared/data are not there")

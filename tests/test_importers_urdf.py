@@ -16,11 +16,11 @@ from tests.oracle.drawn import drawn_tips
 from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
 
 from ulna import Arm, UlnaInputError
-from ulna.importers.robots import panda, ur10
-from ulna.importers.urdf import import_urdf
-from ulna.model import Joint, Probe
-from ulna.urdf.arm import arm_from_chain
-from ulna.urdf.chain import read_chain
+from ulna.arm.model import Joint, Probe
+from ulna.exchange.importers.robots import panda, ur10
+from ulna.exchange.importers.urdf import import_urdf
+from ulna.exchange.urdf.arm import arm_from_chain
+from ulna.exchange.urdf.chain import read_chain
 
 DRAWINGS = Path(__file__).parents[2] / "shared" / "data" / "mukca" / "nominal_urdf"
 needs_drawings = pytest.mark.skipif(not DRAWINGS.is_dir(), reason="the drawings of ../shared/data are not there")

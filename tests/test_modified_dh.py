@@ -15,8 +15,8 @@ from tests.small_study import says
 from tests.urdf_texts import poses
 
 from ulna import Arm, Joint, Probe, UlnaInputError
-from ulna.frames.modified import from_modified, to_modified
-from ulna.importers.robots import panda
+from ulna.arm.frames.modified import from_modified, to_modified
+from ulna.exchange.importers.robots import panda
 
 angle, length = st.floats(-3, 3), st.floats(-500, 500)
 row = st.tuples(angle, length, angle, length, st.sampled_from([1, -1]))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.directions import worth_naming
-from ulna.model import Arm, Joint, Probe
-from ulna.report.identification import combination
-from ulna.study import Artefact, FitOptions, Readings, Study
+from ulna.arm.directions import worth_naming
+from ulna.arm.model import Arm, Joint, Probe
+from ulna.cli.printed.identification import combination
+from ulna.study.data import Artefact, FitOptions, Readings, Study
 
 LINKS = [
     (0.1, -1.57, 35.0, 250.0),

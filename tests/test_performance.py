@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
-from ulna.effects import Effects
-from ulna.errors import InputWarning, UlnaInputError
-from ulna.files.performance import read_performance
-from ulna.model import Arm
-from ulna.performance import LengthTest, Performance, PointTest, SphereTest
+from ulna.arm.effects.effects import Effects
+from ulna.arm.model import Arm
+from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.reproduce.ways.arms import SEVEN, true_arm
-from ulna.uncertainty.assess import assess
-from ulna.uncertainty.constrained import Constrained
-from ulna.uncertainty.known import known_of_performance
-from ulna.uncertainty.measurands import Touched
-from ulna.uncertainty.simulated_tests import SetUp, set_up
-from ulna.uncertainty.task import Task
-from ulna.virtual.postures import Mover
+from ulna.simulation.mover import Mover
+from ulna.uncertainties.assess import assess
+from ulna.uncertainties.constrained import Constrained
+from ulna.uncertainties.knowledge import known_of_performance
+from ulna.uncertainties.measurands import Touched
+from ulna.uncertainties.performance import LengthTest, Performance, PointTest, SphereTest
+from ulna.uncertainties.performance_file import read_performance
+from ulna.uncertainties.simulated_tests import SetUp, set_up
+from ulna.uncertainties.task import Task
 from ulna.work.pieces import Threads
 
 TRAVEL = np.tile([-3.0, 3.0], (7, 1))

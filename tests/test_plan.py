@@ -16,13 +16,13 @@ from tests.cli_runs import platinum, run
 
 import ulna
 from ulna import Artefact, InputWarning, PlanSpec, UlnaInputError, _core
-from ulna.planning.asking import free_parameters
 from ulna.planning.candidates import draw
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
 from ulna.planning.order import nearest_first
+from ulna.planning.refusals import free_parameters
 from ulna.planning.trial import problem_of
-from ulna.study import Noise, Readings, Study
-from ulna.virtual.postures import Mover
+from ulna.simulation.mover import Mover
+from ulna.study.data import Noise, Readings, Study
 
 BAR = Artefact("bar", "bar", {"A": (0.0, 0.0, 0.0), "B": (443.172, 0.0, 0.0)}, 443.172)
 SEAT = Artefact("cone", "seat", {"seat": (0.0, 0.0, 0.0)})
@@ -260,7 +260,7 @@ def test_the_command_writes_a_list_to_follow(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_planned_is_told(tmp_path: Path, old: str, new: str, says: str) -> None:
-    from ulna.files.plan import load_plan_spec
+    from ulna.planning.file import load_plan_spec
 
     text, arm = SPEC.replace(old, new), limited()
     if "no diameter" in says:
@@ -303,7 +303,7 @@ def test_an_arm_without_limits_is_refused() -> None:
 
 
 def test_a_file_of_format_1_arrives() -> None:
-    from ulna.files.plan import load_plan_spec
+    from ulna.planning.file import load_plan_spec
 
     fossils = Path(__file__).parent / "data" / "fossils"
     arm = ulna.Arm.load(fossils / "arm-1.toml")

@@ -15,15 +15,17 @@ from tests.oracle.core import core_arm
 from tests.oracle.observed import Points
 
 import ulna
-from ulna.importers.ipa import import_ipa_ur10
-from ulna.importers.mukca import import_mukca
+from ulna.exchange.importers.ipa import import_ipa_ur10
+from ulna.exchange.importers.mukca import import_mukca
 
 DATA = Path(__file__).parents[2] / "shared" / "data"
 
 pytestmark = [
     pytest.mark.shared_data,
     pytest.mark.slow,
-    pytest.mark.filterwarnings("ignore::ulna.errors.InputWarning"),  # real readings go a little beyond the limits
+    pytest.mark.filterwarnings(
+        "ignore::ulna.ground.errors.InputWarning"
+    ),  # real readings go a little beyond the limits
 ]
 
 if not DATA.is_dir():

@@ -9,7 +9,7 @@ from rich.console import Console
 from tests.oracle import published
 from tests.oracle.core import core_arm
 
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 from ulna.reproduce import STUDIES, cheng2011
 from ulna.reproduce.cheng2011 import arms
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_RAD

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from ulna.errors import UlnaInputError
-from ulna.model import Arm, Probe
+from ulna.arm.model import Arm, Probe
+from ulna.ground.errors import UlnaInputError
 from ulna.reproduce import STUDIES
 from ulna.reproduce.ways import comparison, trial
 from ulna.reproduce.ways.arms import ARMS, BAR_MM, SEVEN, SIX, true_arm

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.assembly import assemble
-from ulna.model import Arm, Joint, Probe
-from ulna.study import Artefact, FitOptions, Readings, Study
+from ulna.arm.model import Arm, Joint, Probe
+from ulna.study.assembly import assemble
+from ulna.study.data import Artefact, FitOptions, Readings, Study
 
 
 def six_axes() -> Arm:
@@ -91,7 +91,7 @@ def test_every_model_finds_the_same_arm(kind: str) -> None:
     q = rng.uniform(-2.5, 2.5, (40, 6))
     tips = [result.arm.tip(q) for result in results]
     np.testing.assert_allclose(tips[0], tips[1], rtol=0, atol=1e-6)
-    from ulna.tip_uncertainty import TipUncertainty
+    from ulna.measuring.tip_uncertainty import TipUncertainty
 
     u = [TipUncertainty(result.arm).of(q, 0) for result in results]
     np.testing.assert_allclose(u[0], u[1], rtol=1e-3)

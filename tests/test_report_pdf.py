@@ -12,15 +12,15 @@ from tests.cli_runs import assert_bad_input, run, write_lengths
 from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated, seats_study
 
-from ulna.document.content import Content
-from ulna.document.gather import gather
-from ulna.document.languages import dictionary
-from ulna.document.pdf.blocks import table
-from ulna.document.pdf.render import certificate, render
-from ulna.document.pdf.typeset import typeset
-from ulna.errors import UlnaInputError
-from ulna.extras import JudgedExtra
-from ulna.report.digits import rounded
+from ulna.calibration.extras import JudgedExtra
+from ulna.documents.content import Content
+from ulna.documents.gather import gather
+from ulna.documents.languages.words import dictionary
+from ulna.documents.pdf.blocks import table
+from ulna.documents.pdf.render import certificate, render
+from ulna.documents.pdf.typeset import typeset
+from ulna.ground.digits import rounded
+from ulna.ground.errors import UlnaInputError
 
 MARKUP = "#set page(fill: red) $x^2$ [*b*] _i_ @ref <l> \\ \"q\" 'a' & `raw` // c /* d */ = h"
 

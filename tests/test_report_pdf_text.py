@@ -17,15 +17,15 @@ from tests.cli_runs import write_lengths
 from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated
 
-from ulna.document.content import Content
-from ulna.document.gather import gather
-from ulna.document.languages import dictionary
-from ulna.document.pdf import fonts
-from ulna.document.pdf.fonts import choose
-from ulna.document.pdf.render import certificate, render
-from ulna.document.pdf.text import clean, name
-from ulna.document.pdf.typeset import pictures, typeset
-from ulna.errors import UlnaInputError
+from ulna.documents.content import Content
+from ulna.documents.gather import gather
+from ulna.documents.languages.words import dictionary
+from ulna.documents.pdf import fonts
+from ulna.documents.pdf.fonts import choose
+from ulna.documents.pdf.render import certificate, render
+from ulna.documents.pdf.text import clean, name
+from ulna.documents.pdf.typeset import pictures, typeset
+from ulna.ground.errors import UlnaInputError
 
 #: the languages of Typst, HTML and TeX, and words that are too long for any line
 HOSTILE = (

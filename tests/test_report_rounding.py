@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ulna.report.digits import rounded
+from ulna.ground.digits import rounded
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from tests.simulations import BALL, BAR, NOISE, PLATE, off_over_u, saved, true_a
 
 import ulna
 from ulna import Arm, Probe
-from ulna.files.simulation import load_simulation
+from ulna.simulation.file import load_simulation
 
 WAYS = {
     "bar": BAR + "placements = 150\n",

@@ -14,7 +14,7 @@ from tests.simulations import BALL, BAR, NOISE, PLATE, saved, standing, with_eff
 
 import ulna
 from ulna import Arm
-from ulna.files.simulation import load_simulation
+from ulna.simulation.file import load_simulation
 
 
 def test_the_geometry_is_exact(tmp_path: Path) -> None:

@@ -9,9 +9,9 @@ import pytest
 import uncertainties
 from scipy import optimize, stats
 
-from ulna.errors import UlnaInputError
-from ulna.uncertainty.gum import coverage_factor, numerical_jacobian, propagate
-from ulna.uncertainty.monte_carlo import MonteCarlo, adaptive, agrees, summarize, tolerance
+from ulna.ground.errors import UlnaInputError
+from ulna.uncertainties.gum import coverage_factor, numerical_jacobian, propagate
+from ulna.uncertainties.monte_carlo import MonteCarlo, adaptive, agrees, summarize, tolerance
 
 MILLION = 1_000_000
 

@@ -13,8 +13,8 @@ import uncertainties
 from scipy import stats
 from uncertainties import umath
 
-from ulna.uncertainty.gum import coverage_factor, effective_degrees_of_freedom, numerical_jacobian, propagate
-from ulna.uncertainty.regions import contains, coverage_factor_of_region, ellipsoid
+from ulna.uncertainties.gum import coverage_factor, effective_degrees_of_freedom, numerical_jacobian, propagate
+from ulna.uncertainties.regions import contains, coverage_factor_of_region, ellipsoid
 
 # --- GUM H.2: resistance, reactance and impedance from five sets of V, I, φ -------------------------------------------
 

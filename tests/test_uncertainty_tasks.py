@@ -13,19 +13,19 @@ from scipy.optimize import least_squares
 from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
-from ulna.errors import UlnaInputError
-from ulna.files.models import fill
-from ulna.files.task import TaskFile
-from ulna.files.toml import read_toml
-from ulna.model import Arm, Probe
+from ulna.arm.model import Arm, Probe
+from ulna.formats.models import fill
+from ulna.formats.toml import read_toml
+from ulna.ground.errors import UlnaInputError
+from ulna.measuring.tip_uncertainty import TipUncertainty
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
-from ulna.study import FitOptions
-from ulna.tip_uncertainty import TipUncertainty
-from ulna.uncertainty.assess import assess
-from ulna.uncertainty.first_order import first_order
-from ulna.uncertainty.measurands import MEASURANDS, Touched
-from ulna.uncertainty.task import Task
+from ulna.study.data import FitOptions
+from ulna.uncertainties.assess import assess
+from ulna.uncertainties.first_order import first_order
+from ulna.uncertainties.measurands import MEASURANDS, Touched
+from ulna.uncertainties.task import Task
+from ulna.uncertainties.task_file import TaskFile
 
 ENCODER_RAD, SEAT_MM = np.full(7, 5e-6), 0.008
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.figures.asme_b89_4_22 import effective_diameter, single_point, volumetric
 from ulna.verification.figures.faro import half_ranges
 from ulna.verification.figures.iso_10360_12 import articulation, length_error, probing

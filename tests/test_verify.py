@@ -18,10 +18,10 @@ from tests.cli_runs import run
 from tests.test_files_schema import FOLDER, _known
 
 import ulna
-from ulna.errors import InputWarning
-from ulna.files.verification import load_verification
+from ulna.ground.errors import InputWarning
 from ulna.verification.decision import DecisionRule, Limit, worst_verdict
 from ulna.verification.outcome import FigureResult
+from ulna.verification.result_file import load_verification
 from ulna.verification.verify import Verification
 
 

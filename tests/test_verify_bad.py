@@ -10,7 +10,7 @@ from tests.acceptance import BALL, iso_rows, write_plan
 from tests.cli_runs import assert_bad_input, platinum, run
 
 import ulna
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 
 
 def told(path: Path, arm: Path | None = None) -> str:

@@ -9,7 +9,7 @@ import pytest
 from tests.test_files_schema import FOLDER, _known
 
 import ulna
-from ulna.files.verification import load_verification
+from ulna.verification.result_file import load_verification
 
 FOSSILS = Path(__file__).parent / "data" / "fossils"
 

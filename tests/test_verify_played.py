@@ -11,11 +11,11 @@ import pytest
 from tests.cli_runs import platinum, run, strict_json
 
 import ulna
-from ulna.files.profile import load_profile, shipped
-from ulna.model import Arm, Probe
-from ulna.verification.planned import steps_of
-from ulna.verification.planning import make_test_plan, play_test_plan
-from ulna.verification.played import play
+from ulna.arm.model import Arm, Probe
+from ulna.verification.player import play
+from ulna.verification.profile import load_profile, shipped
+from ulna.verification.steps import steps_of
+from ulna.verification.test_plan import make_test_plan, play_test_plan
 
 BENT = Probe.from_cylindrical(0.431148, 39.4321, 223.8773)
 SMALL = (

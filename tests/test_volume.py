@@ -11,17 +11,17 @@ import polars as pl
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
-from ulna.errors import InputWarning
-from ulna.files.volume import is_volume, read_volume
-from ulna.model import Arm, ParameterCovariance
+from ulna.arm.model import Arm, ParameterCovariance
+from ulna.ground.errors import InputWarning
+from ulna.measuring.tip_uncertainty import TipUncertainty
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
-from ulna.tip_uncertainty import TipUncertainty
-from ulna.uncertainty.assess import assess
-from ulna.uncertainty.measurands import Touched
-from ulna.uncertainty.task import Task
-from ulna.uncertainty.volume import Account, Somewhere, VolumeMap, VolumeTask, volume_map
-from ulna.uncertainty.zones import Spread, by_distance, cells
+from ulna.uncertainties.assess import assess
+from ulna.uncertainties.measurands import Touched
+from ulna.uncertainties.task import Task
+from ulna.uncertainties.volume import Account, Somewhere, VolumeMap, VolumeTask, volume_map
+from ulna.uncertainties.volume_file import is_volume, read_volume
+from ulna.uncertainties.zones import Spread, by_distance, cells
 
 TRAVEL = np.tile([-3.0, 3.0], (7, 1))
 ENCODER_RAD = np.full(7, 5e-6)

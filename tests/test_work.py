@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.errors import UlnaInputError
+from ulna.calibration.recalibrations import Recalibrations, job_of, recalibrations
+from ulna.ground.errors import UlnaInputError
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, workers_at
-from ulna.work.recalibrations import Recalibrations, job_of, recalibrations
 
 
 def study_and_truth() -> tuple[ulna.Study, ulna.Arm]:

@@ -15,8 +15,8 @@ from distributed import Client, LocalCluster
 from tests.cli_runs import assert_bad_input, run, strict_json
 from tests.test_work import same, study_and_truth
 
+from ulna.calibration.recalibrations import recalibrations
 from ulna.work.pieces import workers_at
-from ulna.work.recalibrations import recalibrations
 
 pytestmark = [
     pytest.mark.slow,

@@ -11,31 +11,29 @@ Names are loaded when they are first used, so that `import ulna` and `ulna --hel
 from __future__ import annotations
 
 import importlib
-import sys
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
-    from ulna.batch import Batch, batch
-    from ulna.calibrate import calibrate
-    from ulna.cross_validate import CrossValidation, cross_validate
-    from ulna.effects import Effects
-    from ulna.errors import InputWarning, UlnaInputError
-    from ulna.evaluate import Evaluation, evaluate
-    from ulna.identify import identify
-    from ulna.measure import measure
-    from ulna.model import Arm, Joint, Probe
-    from ulna.plan_spec import PlanSpec
+    from ulna.arm.effects.effects import Effects
+    from ulna.arm.model import Arm, Joint, Probe
+    from ulna.calibration.batch import Batch, batch
+    from ulna.calibration.calibrate import calibrate
+    from ulna.calibration.cross_validate import CrossValidation, cross_validate
+    from ulna.calibration.evaluate import Evaluation, evaluate
+    from ulna.calibration.identify import identify
+    from ulna.calibration.result import Result
+    from ulna.ground.errors import InputWarning, UlnaInputError
+    from ulna.measuring.measure import measure
     from ulna.planning.plan import Plan, plan
-    from ulna.result import Result
-    from ulna.simulate import Simulated, simulate
-    from ulna.simulation import Simulation
-    from ulna.study import Artefact, FitOptions, Noise, Prior, Readings, Study
-    from ulna.uncertainty.asking import uncertainty, volume_uncertainty
-    from ulna.uncertainty.assess import Assessment
-    from ulna.uncertainty.volume import VolumeMap
+    from ulna.planning.spec import PlanSpec
+    from ulna.simulation.simulate import Simulated, simulate
+    from ulna.simulation.spec import Simulation
+    from ulna.study.data import Artefact, FitOptions, Noise, Prior, Readings, Study
+    from ulna.uncertainties.assess import Assessment
+    from ulna.uncertainties.uncertainty import uncertainty, volume_uncertainty
+    from ulna.uncertainties.volume import VolumeMap
     from ulna.verification.verify import Verification, verify
 
 __all__ = [
@@ -77,40 +75,40 @@ __all__ = [
 ]
 
 _WHERE = {
-    "Arm": "model",
-    "Artefact": "study",
-    "Assessment": "uncertainty.assess",
-    "Batch": "batch",
-    "CrossValidation": "cross_validate",
-    "Effects": "effects",
-    "Evaluation": "evaluate",
-    "FitOptions": "study",
-    "InputWarning": "errors",
-    "Joint": "model",
-    "Noise": "study",
+    "Arm": "arm.model",
+    "Artefact": "study.data",
+    "Assessment": "uncertainties.assess",
+    "Batch": "calibration.batch",
+    "CrossValidation": "calibration.cross_validate",
+    "Effects": "arm.effects.effects",
+    "Evaluation": "calibration.evaluate",
+    "FitOptions": "study.data",
+    "InputWarning": "ground.errors",
+    "Joint": "arm.model",
+    "Noise": "study.data",
     "Plan": "planning.plan",
-    "PlanSpec": "plan_spec",
-    "Prior": "study",
-    "Probe": "model",
-    "Readings": "study",
-    "Result": "result",
-    "Simulated": "simulate",
-    "Simulation": "simulation",
-    "Study": "study",
-    "UlnaInputError": "errors",
-    "VolumeMap": "uncertainty.volume",
+    "PlanSpec": "planning.spec",
+    "Prior": "study.data",
+    "Probe": "arm.model",
+    "Readings": "study.data",
+    "Result": "calibration.result",
+    "Simulated": "simulation.simulate",
+    "Simulation": "simulation.spec",
+    "Study": "study.data",
+    "UlnaInputError": "ground.errors",
     "Verification": "verification.verify",
-    "batch": "batch",
-    "calibrate": "calibrate",
-    "cross_validate": "cross_validate",
-    "evaluate": "evaluate",
-    "identify": "identify",
-    "measure": "measure",
+    "VolumeMap": "uncertainties.volume",
+    "batch": "calibration.batch",
+    "calibrate": "calibration.calibrate",
+    "cross_validate": "calibration.cross_validate",
+    "evaluate": "calibration.evaluate",
+    "identify": "calibration.identify",
+    "measure": "measuring.measure",
     "plan": "planning.plan",
-    "simulate": "simulate",
-    "uncertainty": "uncertainty.asking",
-    "volume_uncertainty": "uncertainty.asking",
+    "simulate": "simulation.simulate",
+    "uncertainty": "uncertainties.uncertainty",
     "verify": "verification.verify",
+    "volume_uncertainty": "uncertainties.uncertainty",
 }
 
 
@@ -124,14 +122,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return __all__
-
-
-class _Package(ModuleType):
-    """`ulna.calibrate` is the function, also after the module `ulna.calibrate` was imported by somebody else."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not (name in _WHERE and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

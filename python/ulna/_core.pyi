@@ -1,6 +1,6 @@
 """What the compiled core offers to Python: arrays in, arrays out, mm and rad always.
 
-Nothing here reads files, prints or knows units other than mm and rad; the typed front (`ulna.model` and
+Nothing here reads files, prints or knows units other than mm and rad; the typed front (`ulna.arm.model` and
 above) does that. All functions release the GIL. `UlnaError` carries a message meant for the user.
 """
 

@@ -36,7 +36,7 @@ def batch(
     """
     import ulna
     from ulna.cli import output
-    from ulna.report.batch import batch_report
+    from ulna.cli.printed.batch import batch_report
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:

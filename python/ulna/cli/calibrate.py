@@ -22,10 +22,10 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
     import ulna
+    from ulna.calibration.result import FILES
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.calibration import calibration_report, where_to_look
-    from ulna.result import FILES
+    from ulna.cli.printed.calibration import calibration_report, where_to_look
+    from ulna.formats.output import check_output, refuse_inputs
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work

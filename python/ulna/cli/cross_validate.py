@@ -28,10 +28,10 @@ def cross_validate(
     Example: [bold]ulna cross-validate study.toml --by placement -o out[/bold]
     """
     import ulna
+    from ulna.calibration.cross_validate import FILES
     from ulna.cli import output
-    from ulna.cross_validate import FILES
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.cross_validation import cross_validation_report
+    from ulna.cli.printed.cross_validation import cross_validation_report
+    from ulna.formats.output import check_output, refuse_inputs
 
     if out is not None:
         check_output(out, FILES, force)

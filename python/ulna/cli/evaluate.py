@@ -36,11 +36,11 @@ def evaluate(
     Example: [bold]ulna evaluate out/result.json fresh.toml[/bold]
     """
     import ulna
+    from ulna.calibration.evaluate import FILES
     from ulna.cli import output
-    from ulna.evaluate import FILES
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.study import rows_to_judge
-    from ulna.report.evaluation import evaluation_report
+    from ulna.cli.printed.evaluation import evaluation_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.study.file import rows_to_judge
 
     if out is not None:
         check_output(out, FILES, force)

@@ -17,7 +17,7 @@ def identify(study: Study, as_json: Json = False) -> None:
     """
     import ulna
     from ulna.cli import output
-    from ulna.report.identification import identification_report
+    from ulna.cli.printed.identification import identification_report
 
     loaded = ulna.Study.load(study)
     found = ulna.identify(loaded)

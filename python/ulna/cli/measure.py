@@ -66,9 +66,9 @@ def measure(
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
     """
     from ulna.cli import output
-    from ulna.files.layout import Layout
-    from ulna.measure import measure as measure_to_file
-    from ulna.measure import measure_to_stream
+    from ulna.formats.layout import Layout
+    from ulna.measuring.measure import measure as measure_to_file
+    from ulna.measuring.measure import measure_to_stream
 
     choices: Any = {"angle": angle, "units": units, "temperature_c": temperature, "covariance": covariance}
     table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}

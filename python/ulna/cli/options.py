@@ -29,7 +29,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print the machine form on st
 
 def one_of(option: str, value: str, known: tuple[str, ...]) -> None:
     """Raises UlnaInputError for a word that an option does not know."""
-    from ulna.errors import UlnaInputError, nearest
+    from ulna.ground.errors import UlnaInputError, nearest
 
     if value not in known:
         hint = nearest(value, known)

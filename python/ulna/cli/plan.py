@@ -31,10 +31,10 @@ def plan(
     """
     import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.plan import load_plan_spec
-    from ulna.planning.written import FILES
-    from ulna.report.plan import plan_report
+    from ulna.cli.printed.plan import plan_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.planning.file import load_plan_spec
+    from ulna.planning.outcome import FILES
     from ulna.work.pieces import workers_at
 
     if out is not None:

@@ -32,10 +32,10 @@ def simulate(
     """
     import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.simulation import load_simulation
-    from ulna.report.simulation import simulation_report
-    from ulna.virtual.written import names_for
+    from ulna.cli.printed.simulation import simulation_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.simulation.file import load_simulation
+    from ulna.simulation.study_files import names_for
 
     simulation = load_simulation(spec)
     if seed is not None:

@@ -61,10 +61,10 @@ def uncertainty(
     """
     import ulna
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.volume import is_volume
-    from ulna.uncertainty.pictures import FILES as MAP_FILES
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.errors import UlnaInputError
+    from ulna.uncertainties.plots import FILES as MAP_FILES
+    from ulna.uncertainties.volume_file import is_volume
 
     if trials < 0 or seed < 0:
         raise UlnaInputError("options --trials and --seed: expected numbers of 0 or more. Correct them.")
@@ -82,9 +82,9 @@ def uncertainty(
             f"{task}: a map over the volume is of the first order and quick; expected it without --study and --keep. "
             "Leave them out."
         )
-    from ulna.report.volume import volume_report
-    from ulna.uncertainty.pictures import save_volume
-    from ulna.uncertainty.zones import as_dict
+    from ulna.cli.printed.volume import volume_report
+    from ulna.uncertainties.plots import save_volume
+    from ulna.uncertainties.zones import as_dict
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:
@@ -122,8 +122,8 @@ def _measured(
 
     import ulna
     from ulna.cli import output
-    from ulna.files.output import output_folder
-    from ulna.report.uncertainty import uncertainty_report
+    from ulna.cli.printed.uncertainty import uncertainty_report
+    from ulna.formats.output import output_folder
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:

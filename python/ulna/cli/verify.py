@@ -50,7 +50,7 @@ def verify(
 
     Example: [bold]ulna verify --make-plan iso-10360-12 -o to-measure[/bold]
     """
-    from ulna.errors import UlnaInputError
+    from ulna.ground.errors import UlnaInputError
 
     given = files or []
     if make_plan is not None:
@@ -69,8 +69,8 @@ def verify(
 def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -> None:
     import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.verification import verification_report
+    from ulna.cli.printed.verification import verification_report
+    from ulna.formats.output import check_output, refuse_inputs
     from ulna.verification.verify import FILE, PICTURES, TABLE
 
     *arm, plan = files
@@ -109,9 +109,9 @@ def _make(
 
     import ulna
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.verification.planning import FILES, make_test_plan, play_test_plan
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.errors import UlnaInputError
+    from ulna.verification.test_plan import FILES, make_test_plan, play_test_plan
 
     if len(files) > 1:
         raise UlnaInputError(

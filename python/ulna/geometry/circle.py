@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.clouds import Clouds, peak_to_valley
 from ulna.geometry.settling import settle, solved
+from ulna.ground.errors import UlnaInputError
 
 F64 = NDArray[np.float64]
 Bool = NDArray[np.bool_]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 
 F64 = NDArray[np.float64]
 

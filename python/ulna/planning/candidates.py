@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.plan_spec import PlanSpec
+from ulna.planning.spec import PlanSpec
 from ulna.planning.touchable import touchable
-from ulna.virtual.places import places
-from ulna.virtual.postures import Mover
+from ulna.simulation.mover import Mover
+from ulna.simulation.places import places
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

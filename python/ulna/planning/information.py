@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
+from ulna.arm.model import Arm
 from ulna.planning.candidates import Candidates
+from ulna.planning.spec import PlanSpec
 from ulna.planning.touchable import touchable, turned
-from ulna.study import Study
+from ulna.study.data import Study
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
+from ulna.arm.model import Arm
 from ulna.planning.candidates import Candidates, draw, joined, places_of
 from ulna.planning.information import candidate_rows
-from ulna.virtual.postures import Mover
+from ulna.planning.spec import PlanSpec
+from ulna.simulation.mover import Mover
 from ulna.work.pieces import Workers
 
 F64 = NDArray[np.float64]

@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
-from ulna.planning.asking import check, free_parameters
+from ulna.arm.model import Arm
+from ulna.ground.errors import UlnaInputError
 from ulna.planning.candidates import EACH, ON_SURFACE, POSTURES, Candidates, combine
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
-from ulna.planning.judged import Tests
 from ulna.planning.order import in_order
 from ulna.planning.pieces import draw_all
+from ulna.planning.refusals import check, free_parameters
 from ulna.planning.scene import Figures, Scene
+from ulna.planning.spec import PlanSpec
+from ulna.planning.targets import Tests
 from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial, carry_out
-from ulna.virtual.postures import Mover, travel_or_limits
+from ulna.simulation.mover import Mover, travel_or_limits
 from ulna.work.pieces import Threads, Workers
 
 F64 = NDArray[np.float64]
@@ -79,13 +79,13 @@ class Plan:
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write plan.csv, plan.json and the pictures. Raises UlnaInputError."""
-        from ulna.planning.written import save
+        from ulna.planning.outcome import save
 
         save(self, Path(folder), force)
 
     def as_dict(self) -> dict[str, Any]:
         """`plan.json`: JSON types only."""
-        from ulna.planning.written import as_dict
+        from ulna.planning.outcome import as_dict
 
         return as_dict(self)
 

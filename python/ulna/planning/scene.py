@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.plan_spec import PlanSpec
+from ulna.ground.errors import UlnaInputError
 from ulna.planning.information import Coordinates
-from ulna.planning.judged import Tests
+from ulna.planning.spec import PlanSpec
+from ulna.planning.targets import Tests
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

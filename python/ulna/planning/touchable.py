@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
-from ulna.simulation import Touching
-from ulna.study import SURFACES
-from ulna.virtual.places import Standing
-from ulna.virtual.touches import touches_of
+from ulna.arm.model import Arm
+from ulna.planning.spec import PlanSpec
+from ulna.simulation.places import Standing
+from ulna.simulation.spec import Touching
+from ulna.simulation.touches import touches_of
+from ulna.study.data import SURFACES
 
 F64 = NDArray[np.float64]
 

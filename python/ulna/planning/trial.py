@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.files.arm import arm_toml
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
+from ulna.arm.file import arm_toml
+from ulna.arm.model import Arm
+from ulna.planning.spec import PlanSpec
 from ulna.work.kept import Arrays, each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers

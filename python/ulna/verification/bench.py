@@ -9,12 +9,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.touches import Touches
-from ulna.files.verify_tables import BallTable, CalibratedLengthTable
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.budget import Budget, Surroundings
 from ulna.verification.figures.figure import Definition
 from ulna.verification.outcome import Single
+from ulna.verification.tables import BallTable, CalibratedLengthTable
+from ulna.verification.touches import Touches
 
 Table = TypeVar("Table", BallTable, CalibratedLengthTable)
 

@@ -10,18 +10,18 @@ from pathlib import Path
 from typing import Any
 
 import ulna
-from ulna.errors import InputWarning, UlnaInputError, nearest
-from ulna.files.output import output_folder
-from ulna.files.profile_tables import LimitTable, LimitValue
-from ulna.files.touches import Touches, joined
-from ulna.files.units import MM_PER
-from ulna.files.verify import VerifyPlan, load_verify
-from ulna.files.verify_tables import STATES
+from ulna.formats.output import output_folder
+from ulna.formats.units import MM_PER
+from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
+from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import evaluate, figures_of
 from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult, TestResult
+from ulna.verification.profile_tables import LimitTable, LimitValue
+from ulna.verification.tables import STATES
+from ulna.verification.touches import Touches, joined
 
 Progress = Callable[[str, int, int], None]
 
@@ -104,8 +104,8 @@ class Verification:
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write verification.json, values.csv and, where lengths were measured, lengths.svg and .png. Raises
         UlnaInputError."""
-        from ulna.verification.pictures import draw_lengths
-        from ulna.verification.written import values_table
+        from ulna.verification.plots import draw_lengths
+        from ulna.verification.values_table import values_table
 
         with output_folder(folder, self.files, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)

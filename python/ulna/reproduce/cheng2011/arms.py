@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from ulna.model import Arm, Joint, Probe
-from ulna.virtual.arm import ReadingErrors, VirtualArm
+from ulna.arm.model import Arm, Joint, Probe
+from ulna.simulation.reading_errors import ReadingErrors, VirtualArm
 
 _QUARTER = math.pi / 2
 

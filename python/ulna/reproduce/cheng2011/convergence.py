@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna import _core
-from ulna.model import Arm
+from ulna.arm.model import Arm
 from ulna.reproduce.cheng2011.arms import simulated
 from ulna.reproduce.cheng2011.simulation import length_problem, lengths_between, random_poses
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna import _core
-from ulna.model import Arm, Probe
+from ulna.arm.model import Arm, Probe
 from ulna.reproduce.cheng2011.arms import (
     BAR_MM,
     BENT_PROBE,
@@ -20,7 +20,7 @@ from ulna.reproduce.cheng2011.arms import (
     platinum,
     virtual,
 )
-from ulna.virtual.arm import as_drawn
+from ulna.simulation.reading_errors import as_drawn
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]

@@ -9,7 +9,7 @@ from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ulna.files.output import output_folder
+from ulna.formats.output import output_folder
 from ulna.reproduce.cheng2011.arms import RATED_MM
 from ulna.reproduce.cheng2011.convergence import Convergence
 from ulna.reproduce.cheng2011.experiment import Experiment, Repeated
@@ -143,7 +143,7 @@ class Findings:
 
     def save(self, folder: Path, force: bool = False) -> None:
         """Write pictures (SVG and PNG) and `cheng2011.json` into a folder, all or none. Raises UlnaInputError."""
-        from ulna.reproduce.cheng2011.pictures import draw_bars, draw_convergence
+        from ulna.reproduce.cheng2011.plots import draw_bars, draw_convergence
 
         with output_folder(folder, FILES, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)

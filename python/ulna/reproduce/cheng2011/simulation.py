@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna import _core
-from ulna.model import Arm
+from ulna.arm.model import Arm
 from ulna.reproduce.cheng2011.arms import simulated
 
 F64 = NDArray[np.float64]

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.model import Arm, Joint, Probe
+from ulna.arm.model import Arm, Joint, Probe
 from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, STRAIGHT_PROBE, platinum, virtual
-from ulna.virtual.arm import ReadingErrors, VirtualArm
+from ulna.simulation.reading_errors import ReadingErrors, VirtualArm
 
 BAR_ENDS_MM = np.array([[0.0, 0.0, 0.0], [BAR_MM, 0.0, 0.0]])
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
-from ulna.study import Artefact, Readings
-from ulna.virtual.arm import VirtualArm
+from ulna.simulation.reading_errors import VirtualArm
+from ulna.study.data import Artefact, Readings
 
 F64 = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import ulna
-from ulna.model import Joint, Probe
+from ulna.arm.model import Joint, Probe
 from ulna.reproduce.ways.trial import Trial, study_of
 
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import ulna
-from ulna.assembly import assemble
-from ulna.estimators import search_box
-from ulna.model import Arm
+from ulna.arm.model import Arm
+from ulna.calibration.estimators import search_box
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
-from ulna.study import FitOptions, Noise, Readings, Study
-from ulna.virtual.arm import VirtualArm, as_drawn
+from ulna.simulation.reading_errors import VirtualArm, as_drawn
+from ulna.study.assembly import assemble
+from ulna.study.data import FitOptions, Noise, Readings, Study
 
 F64 = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ulna.files.output import output_folder
+from ulna.formats.output import output_folder
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.claims import FORMAT, Claim, claims_table, plain_table
 from ulna.reproduce.ways.arms import ARMS, SEVEN, SIX

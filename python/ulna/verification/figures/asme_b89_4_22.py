@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.figures.figure import Definition, Figure, points_of, spread_of
 
 F64 = NDArray[np.float64]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.files.verify_tables import Ends
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.figures.figure import points_of
+from ulna.verification.tables import Ends
 
 F64 = NDArray[np.float64]
 

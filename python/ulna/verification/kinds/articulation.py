@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import ArticulationTest
-from ulna.files.touches import Touches
 from ulna.geometry.enclosing import enclosing_sphere
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each
 from ulna.verification.figures.iso_10360_12 import L_DIA
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.profile_tables import ArticulationTest
+from ulna.verification.touches import Touches
 
 
 def articulation(name: str, table: ArticulationTest, touches: Touches, bench: Bench) -> Found:

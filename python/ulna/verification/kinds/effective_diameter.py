@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import DiameterTest
-from ulna.files.touches import Touches
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
 from ulna.verification.budget import Budget
 from ulna.verification.figures.asme_b89_4_22 import DIAMETER, DIAMETER_SPREAD, DIAMETER_WORST, effective_diameter_of
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.profile_tables import DiameterTest
+from ulna.verification.touches import Touches
 
 
 def effective_diameter(name: str, table: DiameterTest, touches: Touches, bench: Bench) -> Found:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import LengthTest
-from ulna.files.touches import Touches
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each
 from ulna.verification.figures.iso_10360_12 import E_BI, E_UNI
 from ulna.verification.figures.lengths import OPPOSING
 from ulna.verification.kinds.measured_lengths import measured_lengths
+from ulna.verification.profile_tables import LengthTest
+from ulna.verification.touches import Touches
 
 
 def length(name: str, table: LengthTest, touches: Touches, bench: Bench) -> Found:

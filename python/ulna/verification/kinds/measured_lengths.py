@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ulna.errors import UlnaInputError
-from ulna.files.touches import Touches
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Length, called, tip_mm
 from ulna.verification.figures.lengths import OPPOSING, length_between
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.touches import Touches
 
 
 def measured_lengths(name: str, touches: Touches, bench: Bench) -> list[tuple[Length, Single]]:

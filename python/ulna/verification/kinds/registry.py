@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ulna.files.profile_tables import TestTable
-from ulna.files.touches import Touches
 from ulna.verification.bench import Bench, Found
 from ulna.verification.figures.asme_b89_4_22 import (
     DIAMETER,
@@ -28,6 +26,8 @@ from ulna.verification.kinds.length import length
 from ulna.verification.kinds.single_point import single_point
 from ulna.verification.kinds.sphere import sphere
 from ulna.verification.kinds.volumetric import volumetric
+from ulna.verification.profile_tables import TestTable
+from ulna.verification.touches import Touches
 
 _EVALUATE: dict[str, Callable[[str, Any, Touches, Bench], Found]] = {
     "sphere": sphere,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import SinglePointTest
-from ulna.files.touches import Touches
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, within_shares
 from ulna.verification.figures.asme_b89_4_22 import single_point as asme
 from ulna.verification.figures.faro import half_ranges
 from ulna.verification.figures.figure import Definition, Figure
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.profile_tables import SinglePointTest
+from ulna.verification.touches import Touches
 
 
 def single_point(name: str, table: SinglePointTest, touches: Touches, bench: Bench) -> Found:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ulna.files.profile_tables import SphereTest
-from ulna.files.touches import Touches
 from ulna.geometry.sphere import fit_sphere
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
 from ulna.verification.figures.iso_10360_12 import P_FORM, P_SIZE, probing_of
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.profile_tables import SphereTest
+from ulna.verification.touches import Touches
 
 
 def sphere(name: str, table: SphereTest, touches: Touches, bench: Bench) -> Found:

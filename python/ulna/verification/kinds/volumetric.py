@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import VolumetricTest
-from ulna.files.touches import Touches
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, counted, within_shares
 from ulna.verification.figures.asme_b89_4_22 import VOLUMETRIC_MAX
 from ulna.verification.figures.asme_b89_4_22 import volumetric as asme
 from ulna.verification.figures.lengths import OPPOSING
 from ulna.verification.kinds.measured_lengths import measured_lengths
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.profile_tables import VolumetricTest
+from ulna.verification.touches import Touches
 
 
 def volumetric(name: str, table: VolumetricTest, touches: Touches, bench: Bench) -> Found:

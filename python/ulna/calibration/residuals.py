@@ -1,0 +1,110 @@
+"""The table of residuals, one row per reading, and how it is written: CSV, and the list in a result's JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from ulna.study.data import SURFACES, Readings, Study
+
+if TYPE_CHECKING:
+    from ulna import _core
+
+SCHEMA: dict[str, Any] = {
+    "row": pl.Int64,
+    "file": pl.String,
+    "artefact": pl.String,
+    "placement": pl.String,
+    "feature": pl.String,
+    "probe": pl.String,
+    "x_mm": pl.Float64,
+    "y_mm": pl.Float64,
+    "z_mm": pl.Float64,
+    "length_mm": pl.Float64,
+    "distance_mm": pl.Float64,
+    "norm_mm": pl.Float64,
+    "weight": pl.Float64,
+    "times_scatter": pl.Float64,
+    "outlier": pl.Boolean,
+    "counted": pl.Float64,
+}
+"""`row` counts the file's data rows from 1. Point readings have x, y, z: tip minus where the feature stands, in the
+base frame; length rows have `length_mm`: measured minus stated; touches of surfaces `distance_mm`: from the surface,
+less the ball's radius. `norm_mm` is the magnitude; `weight` is the root of the reading's weight, 1/mm, or 1 where no
+noise is stated. `times_scatter` is how far off the reading is in units of the scatter of its artefact's readings, what
+its placement and the fit took of it made up for; `outlier`: farther than one normal reading in ten thousand. With a
+loss `counted` is what it let the reading count, 0 to 1."""
+
+_OWN = {"length": ("length_mm",), "surface": ("distance_mm",), "point": ("feature", "x_mm", "y_mm", "z_mm")}
+"""Columns that only one kind of reading has."""
+_CHUNK_ROWS = 100_000
+
+
+def residual_table(study: Study, fitted: _core.Fitted) -> pl.DataFrame:
+    """All readings of the study in their order, columns as in `SCHEMA`; what does not apply is null."""
+    tables = [_group_table(study, readings, fitted, group) for group, readings in enumerate(study.readings)]
+    return pl.concat(tables) if tables else pl.DataFrame(schema=SCHEMA)
+
+
+def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: int) -> pl.DataFrame:
+    artefact = readings.artefact
+    rows = len(readings)
+    residual_mm, counted = fitted.residuals(group), fitted.counted(group)
+    columns: dict[str, Any] = {
+        "row": readings.row,
+        # a study made in memory has no files
+        "file": _named([file.path.name for file in study.files] or ["in memory"], readings.file),
+        "artefact": pl.repeat(artefact.name, rows, eager=True),
+        "placement": pl.Series(readings.placement.tolist(), dtype=pl.String),
+        "probe": _named(list(study.arm.probes), readings.probe),
+        "weight": fitted.weights(group),
+        "times_scatter": fitted.lengths(group),
+        "outlier": fitted.outliers(group),
+    }
+    if counted is not None:
+        columns["counted"] = counted
+    if artefact.kind == "length" or artefact.kind in SURFACES:
+        columns["length_mm" if artefact.kind == "length" else "distance_mm"] = residual_mm[:, 0]
+        columns["norm_mm"] = np.abs(residual_mm[:, 0])
+    else:
+        columns["feature"] = _named(list(artefact.features), readings.feature)
+        columns |= {f"{axis}_mm": residual_mm[:, k] for k, axis in enumerate("xyz")}
+        columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
+    missing = {name: pl.repeat(None, rows, dtype=dtype, eager=True) for name, dtype in SCHEMA.items()}
+    return pl.DataFrame({name: columns.get(name, missing[name]) for name in SCHEMA}, schema=SCHEMA)
+
+
+def _named(names: Sequence[str], index: Any) -> pl.Series:
+    return pl.Series(names, dtype=pl.String).gather(index)
+
+
+def json_rows(table: pl.DataFrame) -> Iterator[str]:
+    """The table as JSON objects with commas between, in pieces of bounded size; keys that do not apply are left out."""
+    between = ""
+    for start in range(0, table.height, _CHUNK_ROWS):
+        chunk = table.slice(start, _CHUNK_ROWS)
+        # runs of one kind, so that each object has just the keys of its kind
+        kind = (
+            pl.when(pl.col("length_mm").is_not_null())
+            .then(pl.lit("length"))
+            .when(pl.col("distance_mm").is_not_null())
+            .then(pl.lit("surface"))
+            .otherwise(pl.lit("point"))
+        )
+        for run in (
+            chunk.with_columns(kind.alias("_kind"))
+            .with_columns(pl.col("_kind").rle_id().alias("_run"))
+            .partition_by("_run", include_key=False)
+        ):
+            lacking = [name for other, names in _OWN.items() if other != run["_kind"][0] for name in names]
+            lacking += ["_kind", *(["counted"] if run["counted"].is_null().all() else [])]
+            yield between + run.drop(lacking).write_ndjson().rstrip("\n").replace("\n", ",\n")
+            between = ",\n"
+
+
+def from_json_rows(rows: list[dict[str, Any]]) -> pl.DataFrame:
+    """The inverse of `json_rows`, from the parsed list."""
+    return pl.DataFrame(rows, schema=SCHEMA)

@@ -1,0 +1,213 @@
+"""The result of a calibration, in memory and as files: `result.json` (`ulna-result/1`), `arm.toml`, `residuals.csv`."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import polars as pl
+
+from ulna.arm.covariance_file import covariance_of_result
+from ulna.arm.file import arm_document, arm_of_result, arm_toml
+from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.probes import ProbeView, probe_views
+from ulna.calibration.extras import JudgedExtra
+from ulna.calibration.figures import Figures, PlacementFigures
+from ulna.calibration.identify import Identification
+from ulna.calibration.residuals import from_json_rows, json_rows
+from ulna.formats.output import output_folder
+from ulna.formats.toml import check_format, read_json
+from ulna.ground.errors import UlnaInputError
+
+if TYPE_CHECKING:
+    from ulna import _core
+
+FORMAT = "ulna-result/1"
+FILES = ("result.json", "arm.toml", "residuals.csv")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of the arm before and after."""
+
+    name: str
+    """As `joint.3.theta0`, `probe.bent.x`, `joint.3.c1` or `artefact.ball.diameter`."""
+    unit: str
+    """"rad", "mm", "1/K" or "rad/(N m)", of start, value and u."""
+    start: float
+    value: float
+    u: float | None
+    """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
+    status: str
+    """"fitted", "held" or "not-determined"."""
+    prior: dict[str, float] | None = None
+    """What was known of it before: value and u, where the fit used it."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """As in `result.json`, list `parameters`."""
+        entry = asdict(self)
+        if self.prior is None:
+            del entry["prior"]
+        return entry
+
+
+@dataclass(frozen=True)
+class FitSummary:
+    """How the fit ended."""
+
+    termination: str
+    """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
+    "max-iterations", "poor-minimum"."""
+    converged: bool
+    iterations: int
+    evaluations: int
+    cost_start: float
+    """Sum of squares of the whitened residuals at the start; mm² where no noise is stated."""
+    cost: float
+    rms_start_mm: float
+    """Root of the mean of the squared norms of the readings' residuals, unweighted."""
+    rms_mm: float
+    readings: int
+    observations: int
+    """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
+    placement_unknowns: int
+    degrees_of_freedom: int
+    chi2_per_dof: float | None
+    """1 where the stated noise is right; None without stated noise."""
+    searched_starts: int
+    search_reason: str
+    folded: list[str]
+    undecided_signs: list[list[int]] = field(default_factory=list)
+    """Sets of joints that may all count the other way: readings and the arm file do not tell."""
+    method: str = "lm"
+    """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
+    box_evaluations: int = 0
+    """How often that search evaluated the sum of squares."""
+    loss: str = "none"
+    scatter: dict[str, float] = field(default_factory=dict)
+    """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
+
+    @classmethod
+    def from_core(cls, fitted: _core.Fitted, **more: Any) -> FitSummary:
+        """Copy out of the core; `more` are the fields that it does not know."""
+        values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name not in more}
+        return cls(**(values | more | {"folded": list(fitted.folded)}))
+
+    def as_dict(self) -> dict[str, Any]:
+        """As in `result.json`, key `fit`; `chi2_per_dof` is left out where it is not known."""
+        entry = asdict(self)
+        if self.chi2_per_dof is None:
+            del entry["chi2_per_dof"]
+        return entry
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any]) -> FitSummary:
+        """The inverse of `as_dict`."""
+        values: dict[str, Any] = {"chi2_per_dof": None} | dict(entry)
+        # older files lack the later fields
+        return cls(**{name: values[name] for name in cls.__dataclass_fields__ if name in values})
+
+
+@dataclass
+class Result:
+    """A calibrated arm and everything that is known about it."""
+
+    arm: Arm
+    """The calibrated arm, its `uncertainty` set."""
+    parameters: list[Parameter]
+    covariance: ParameterCovariance
+    identifiability: Identification
+    fit: FitSummary
+    residuals: pl.DataFrame
+    """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
+    artefacts: list[PlacementFigures]
+    """What a metrologist reads, of the calibrated arm, from the fitted readings alone."""
+    before: Figures
+    """The same over all placements, of the arm that the fit started from."""
+    after: Figures
+    """The same over all placements, of the calibrated arm."""
+    provenance: dict[str, Any]
+    outliers: list[dict[str, Any]] = field(default_factory=list)
+    """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
+    extras: list[JudgedExtra] = field(default_factory=list)
+    """Blocks beyond geometry, each judged by readings left out."""
+
+    @property
+    def probes(self) -> list[ProbeView]:
+        """Each probe's tip as x, y, z and as theta0, r, h, with standard uncertainties."""
+        return probe_views(self.arm, {row.name: row.status for row in self.parameters}, self.covariance)
+
+    def head(self) -> dict[str, Any]:
+        """`result.json` without the residuals: JSON types only, no NaN."""
+        return {
+            "format": FORMAT,
+            "arm": arm_document(self.arm),
+            "parameters": [row.as_dict() for row in self.parameters],
+            "probes": {view.name: view.as_dict() for view in self.probes},
+            "covariance": {"names": self.covariance.names, "matrix": _json_matrix(self.covariance.matrix)},
+            "identifiability": self.identifiability.as_dict(),
+            "fit": self.fit.as_dict(),
+            "outliers": self.outliers,
+            "extras": [entry.as_dict() for entry in self.extras],
+            "artefacts": [entry.as_dict() for entry in self.artefacts],
+            "overall": {"before": self.before, "after": self.after},
+            "provenance": self.provenance,
+        }
+
+    def write_json(self, write: Any) -> None:
+        """Hand `result.json` piece by piece to `write`; memory stays bounded for any number of readings."""
+        text = json.dumps(self.head(), indent=1, ensure_ascii=False, allow_nan=False)
+        write(text.removesuffix("\n}") + ',\n "residuals": [\n')
+        for piece in json_rows(self.residuals):
+            write(piece)
+        write("\n ]\n}\n")
+
+    def save(self, folder: str | Path, force: bool = False) -> None:
+        """Write `result.json`, `arm.toml` and `residuals.csv` into a folder: all of them or none.
+
+        Raises UlnaInputError where one of them exists and `force` is not given, or the folder cannot be written.
+        """
+        with output_folder(folder, FILES, force) as staging:
+            with (staging / "result.json").open("w", encoding="utf-8") as file:
+                self.write_json(file.write)
+            (staging / "arm.toml").write_text(arm_toml(self.arm), encoding="utf-8")
+            self.residuals.write_csv(staging / "residuals.csv")
+
+    @classmethod
+    def load(cls, path: str | Path) -> Result:
+        """Read a `result.json`, or the one in a folder. Raises UlnaInputError."""
+        path = Path(path)
+        path = path / "result.json" if path.is_dir() else path
+        document, _ = read_json(path, "a result.json")
+        check_format(document, path, "ulna-result")
+        arm = arm_of_result(document, path)
+        try:
+            return cls(
+                arm=arm,
+                parameters=[Parameter(**entry) for entry in document["parameters"]],
+                covariance=covariance_of_result(document, arm, path),
+                identifiability=Identification.from_dict(document["identifiability"]),
+                fit=FitSummary.from_dict(document["fit"]),
+                residuals=from_json_rows(document["residuals"]),
+                artefacts=[PlacementFigures.from_dict(entry) for entry in document["artefacts"]],
+                before=document["overall"]["before"],
+                after=document["overall"]["after"],
+                provenance=document["provenance"],
+                outliers=document.get("outliers", []),
+                extras=[JudgedExtra(**entry) for entry in document.get("extras", [])],
+            )
+        except (KeyError, TypeError, ValueError, OverflowError, pl.exceptions.PolarsError) as error:
+            raise UlnaInputError(
+                f"{path}: not as {FORMAT} says ({type(error).__name__}: {error}); expected the file as `ulna "
+                "calibrate` wrote it. Calibrate again."
+            ) from None
+
+
+def _json_matrix(matrix: Any) -> list[list[float | None]]:
+    """JSON knows no NaN: null stands for what is not known."""
+    return [[value if math.isfinite(value) else None for value in row] for row in np.asarray(matrix).tolist()]

@@ -1,0 +1,79 @@
+"""Figures of parameters and lengths: correlation map, singular values, length errors."""
+
+from __future__ import annotations
+
+import html
+import math
+
+import numpy as np
+
+from ulna.documents.content import Lengths, Observability, Parameters
+from ulna.documents.html.markup import END, ISOLATE
+from ulna.documents.html.plots import INK, MAIN, SECOND, Plot, axis, layout, numbers, points
+from ulna.documents.languages.words import Words
+from ulna.documents.thinning import shown
+
+MOST_LENGTHS = 3000
+
+#: blue, the paper, vermilion: told apart by all, and by a printer without colours from the middle
+DIVERGING = [[0, "#0072B2"], [0.5, "@paper"], [1, "#D55E00"]]
+
+
+def correlation_plot(parameters: Parameters, page: Words, words: Words) -> Plot:
+    """The matrix as colours."""
+    names = [f"{ISOLATE}{html.escape(each, quote=False)}{END}" for each in parameters.correlation_names]
+    matrix = parameters.correlation
+    data = [
+        {
+            "type": "heatmap",
+            "x": names,
+            "y": names,
+            "z": [[None if value is None else round(value, 4) for value in numbers(row)] for row in matrix],
+            "zmin": -1,
+            "zmax": 1,
+            "colorscale": DIVERGING,
+            "xgap": 1,
+            "ygap": 1,
+            "colorbar": {"title": {"text": "r"}, "thickness": 12, "tickcolor": INK, "outlinewidth": 0},
+            "hovertemplate": "%{y}<br>%{x}<br>r = %{z}<extra></extra>",
+        }
+    ]
+    small = {"size": 10}
+    ticks = {"tickfont": small, "showgrid": False, "zeroline": False, "dtick": 1}
+    shape = layout(
+        axis("", tickangle=-90, **ticks),
+        axis("", autorange="reversed", **ticks),
+        margin={"l": 8, "r": 8, "t": 34, "b": 8},
+    )
+    return Plot("correlation", page("correlation.note"), data, shape, 200 + 15 * len(names))
+
+
+def singular_plot(found: Observability, page: Words, words: Words) -> Plot:
+    """On a logarithmic axis; those not determined, rounding only, are open."""
+    values = found.singular_values
+    number = np.arange(1, len(values) + 1)
+    kept = number <= found.determined
+    data = [points(words("legend.determined"), number[kept], values[kept], MAIN, size=8)]
+    lost = ~kept & (values > 0.0)
+    if lost.any():
+        data.append(points(words("legend.lost"), number[lost], values[lost], SECOND, "diamond-open", 9))
+    seen = values[values > 0.0]
+    decades = math.log10(float(seen[0] / seen[-1]))
+    # ticks within decades where there are few of them, else some of the decades
+    step: str | int = "D2" if decades < 2.2 else math.ceil(decades / 8)
+    y = axis(words("axis.singular-value"), type="log", dtick=step)
+    shape = layout(axis(words("axis.index"), zeroline=False), y, bool(lost.any()))
+    return Plot("singular", page("observability.note", equations=found.equations), data, shape)
+
+
+def length_plot(lengths: Lengths, page: Words, words: Words) -> Plot:
+    """Length errors of the fitted readings."""
+    part = shown(np.zeros(len(lengths.error_mm), dtype=bool), MOST_LENGTHS)
+    data = [points(words("legend.readings"), lengths.length_mm[part.index], lengths.error_mm[part.index], MAIN)]
+    caption: str = page("lengths.note", count=len(lengths.error_mm))
+    caption += f" {page.say(part.said)}" if part.step > 1 else ""
+    x = axis(words("axis.length-mm"), zeroline=False)
+    if float(np.ptp(lengths.length_mm)) == 0.0:  # one length: an axis that is not made of rounding
+        middle = float(lengths.length_mm[0])
+        x |= {"range": [0.9 * middle, 1.1 * middle]}
+    return Plot("lengths", caption, data, layout(x, axis(words("axis.length-error-mm"))))

@@ -1,0 +1,251 @@
+"""One run over a file of readings: columns checked first, then piece by piece angles, points, uncertainties."""
+
+from __future__ import annotations
+
+import math
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.arm.covariance_file import noise_of_result
+from ulna.arm.file import WHAT, arm_of_result, load_arm
+from ulna.arm.model import Arm
+from ulna.formats.header import Header, Piece
+from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.table import count_rows, read_header, stream
+from ulna.formats.toml import check_format, read_json
+from ulna.formats.units import MM_PER
+from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
+from ulna.study.readings.checks import MOST_RAD
+from ulna.study.readings.columns import check_columns, known_columns
+from ulna.study.readings.readings import WHAT as WHAT_READINGS
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+_SHOWN_ROWS = 5
+
+
+class MeasureJob:
+    """One run of `measure`: knows the columns before the first row is read."""
+
+    def __init__(
+        self,
+        arm: Arm | str | Path,
+        readings: Path,
+        probe: str | None = None,
+        angle: str = "rad",
+        units: str = "mm",
+        encoder_u_rad: F64 | None = None,
+        layout: Layout = AS_EXPECTED,
+        temperature_c: float | None = None,
+        covariance: bool = False,
+    ) -> None:
+        """Raises UlnaInputError for whatever is wrong before the first row."""
+        if isinstance(arm, Arm):
+            self.arm = arm
+        else:
+            self.arm, stated_rad = load_arm_and_noise(Path(arm))
+            encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        if units not in MM_PER:
+            raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
+        self.unit = units
+        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
+        self._angle = angle
+        self._rad_per = self._angle_factors(angle)
+        self._q = [f"q{k + 1}" for k in range(self.arm.n)]
+        remarks: list[str] = []
+        check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        self._temperature_c = temperature_c
+        self._warm = self._temperatures(remarks)
+        self._texts = [name for name in ("id", "probe") if name in self.header.columns]
+        self._probe = self._fixed_probe(probe, remarks)
+        if "p1" in self.header.columns:
+            remarks.append(f"{self.header.path}: two poses a row: only those of q1 … q{self.arm.n} are measured.")
+        for remark in remarks:
+            warnings.warn(remark, InputWarning, stacklevel=2)
+        self._covariance = covariance
+        self._uncertainty: TipUncertainty | None = None
+        if self.arm.uncertainty is not None:
+            self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
+        elif covariance:
+            raise UlnaInputError(
+                f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
+                "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
+            )
+        self._outside: dict[int, list[int]] = {}
+        self._outside_count: dict[int, int] = {}
+        self.rows = 0
+
+    @property
+    def columns(self) -> list[str]:
+        """Of the output."""
+        u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
+        beside = ["c_xy", "c_xz", "c_yz"] if self._covariance else []
+        return [*self._texts, "x", "y", "z", *u, *beside]
+
+    def check(self) -> None:
+        """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
+        cannot be taken back."""
+        for piece in self._pieces():
+            self._angles(piece)
+            self._probes(piece)
+        self._outside.clear()
+        self._outside_count.clear()
+
+    def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
+        """The output in pieces. Warns with InputWarning of readings outside the joints' limits."""
+        total = count_rows(self.header)
+        for piece in self._pieces():
+            yield self._measured(piece)
+            self.rows += len(piece)
+            if progress is not None:
+                progress("measure", self.rows, total)
+        if not self.rows:
+            raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_outside()
+
+    @property
+    def notes(self) -> list[str]:
+        """Why uncertainties were left empty; complete when `frames` are used up."""
+        return [] if self._uncertainty is None else self._uncertainty.notes
+
+    def _pieces(self) -> Iterator[Piece]:
+        return stream(self.header, self._q + self._warm, self._texts)
+
+    def _measured(self, piece: Piece) -> pl.DataFrame:
+        q_rad = self._angles(piece)
+        probe = self._probes(piece)
+        warmth_k = self._warmth_k(piece)
+        p_mm = self.arm.core.tip(q_rad, probe, warmth_k)
+        values = [p_mm / MM_PER[self.unit]]
+        if self._uncertainty is not None:
+            c_mm2 = np.empty((len(p_mm), 6))
+            for k in np.unique(probe):
+                rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
+                warmth = None if warmth_k is None else np.ascontiguousarray(warmth_k[rows])
+                c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), warmth)
+            values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
+            if self._covariance:
+                values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
+        numbers = np.concatenate(values, axis=1)
+        columns = dict(piece.texts)
+        for k, name in enumerate(self.columns[len(self._texts) :]):
+            columns[name] = pl.Series(name, np.ascontiguousarray(numbers[:, k]), nan_to_null=True)
+        return pl.DataFrame(columns)
+
+    def _angles(self, piece: Piece) -> F64:
+        q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
+        q_rad = q if self._angle == "rad" else q * self._rad_per
+        if max(q_rad.max(), -q_rad.min()) > MOST_RAD:
+            row, k = (int(at[0]) for at in np.nonzero(np.abs(q_rad) > MOST_RAD))
+            asked = {"rad": "degrees or counts", "deg": "counts", "counts": "radians or degrees"}[self._angle]
+            raise UlnaInputError(
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, self._q[k])}: got "
+                f"{q[row, k]:g} {self._angle}, more than two turns; expected angles within ±4π rad (720°). Are these "
+                f"{asked}? Say which with --angle."
+            )
+        for k, joint in enumerate(self.arm.joints):
+            if joint.limits_rad is not None:
+                low, high = joint.limits_rad
+                out = (q_rad[:, k] < low) | (q_rad[:, k] > high)
+                if out.any():
+                    rows = self._outside.setdefault(k, [])
+                    rows += (np.flatnonzero(out)[:_SHOWN_ROWS] + piece.before + 1).tolist()
+                    self._outside_count[k] = self._outside_count.get(k, 0) + int(out.sum())
+        return q_rad
+
+    def _warmth_k(self, piece: Piece) -> F64 | None:
+        temperature_c = piece.numbers[:, self.arm.n :]
+        if temperature_c.shape[1] == 1:
+            temperature_c = temperature_c[:, 0]
+        return self.arm.warmth_k(temperature_c if self._warm else self._temperature_c, len(piece))
+
+    def _temperatures(self, remarks: list[str]) -> list[str]:
+        """The columns that say how warm it was, where that matters. Raises UlnaInputError where nothing says it."""
+        if "link-expansion" not in self.arm.extras:
+            if self._temperature_c is not None:
+                remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
+            return []
+        found = [name for name in self.header.columns if re.fullmatch("temperature[0-9]*", name)]
+        if not found and self._temperature_c is None:
+            raise UlnaInputError(
+                f"{self.header.path}: no column 'temperature', but the links of arm '{self.arm.name}' grow with it; "
+                "expected °C, of each reading or of all. Add the column, or give --temperature."
+            )
+        if found and self._temperature_c is not None:
+            remarks.append(f"{self.header.path}: the temperature given for all is not used: the file has its own.")
+        return found if found == ["temperature"] else [f"temperature{k + 1}" for k in range(len(found))]
+
+    def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
+        if self._probe is not None:
+            return self._probe
+        names = list(self.arm.probes)
+        column = piece.texts["probe"]
+        index = column.replace_strict(names, list(range(len(names))), default=-1, return_dtype=pl.Int64).to_numpy()
+        if (index < 0).any():
+            row = int(np.argmax(index < 0))
+            raise UlnaInputError(
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, 'probe')}: arm "
+                f"'{self.arm.name}' has no probe '{column[row]}'.{nearest(str(column[row]), names)}"
+            )
+        return np.ascontiguousarray(index)
+
+    def _fixed_probe(self, probe: str | None, remarks: list[str]) -> int | None:
+        if "probe" not in self.header.columns:
+            if probe is None and len(self.arm.probes) > 1:
+                raise UlnaInputError(
+                    f"{self.header.path}: no column 'probe', and arm '{self.arm.name}' has {len(self.arm.probes)} "
+                    f"probes; say which is on: --probe {' or --probe '.join(self.arm.probes)}."
+                )
+            return self.arm.probe_index(probe)
+        if probe is not None:
+            self.arm.probe_index(probe)
+            remarks.append(f"{self.header.path}: --probe {probe} is not used: the file has its own column 'probe'.")
+        return None
+
+    def _angle_factors(self, angle: str) -> F64:
+        if angle == "rad":
+            return np.ones(self.arm.n)
+        if angle == "deg":
+            return np.full(self.arm.n, math.pi / 180.0)
+        if angle != "counts":
+            raise UlnaInputError(
+                f"measure: angle '{angle}'; expected rad, deg or counts.{nearest(angle, ('rad', 'deg', 'counts'))}"
+            )
+        for k, joint in enumerate(self.arm.joints, start=1):
+            if joint.counts_per_turn is None:
+                raise UlnaInputError(
+                    f"arm '{self.arm.name}': key 'joint.{k}.counts_per_turn' is missing, which readings in counts "
+                    "need. Add it to the arm file."
+                )
+        return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
+
+    def _warn_outside(self) -> None:
+        for k, rows in sorted(self._outside.items()):
+            low, high = self.arm.joints[k].limits_rad or (-math.inf, math.inf)
+            count = self._outside_count[k]
+            shown = ", ".join(str(row) for row in rows[:_SHOWN_ROWS]) + (", …" if count > _SHOWN_ROWS else "")
+            warnings.warn(
+                f"{self.header.path}: column 'q{k + 1}': {count} readings outside the limits {low:g} … {high:g} rad of "
+                f"joint {k + 1} (rows {shown}). They are measured all the same; check the angles or the limits.",
+                InputWarning,
+                stacklevel=2,
+            )
+
+
+def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
+    """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
+    stated. Raises UlnaInputError."""
+    if path.suffix.lower() != ".json":
+        return load_arm(path), None
+    document, _ = read_json(path, WHAT)
+    check_format(document, path, "ulna-result")
+    arm = arm_of_result(document, path)
+    return arm, noise_of_result(document, arm, path)

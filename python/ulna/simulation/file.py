@@ -1,0 +1,191 @@
+"""Simulation files: `ulna-simulation/1`, TOML: a true arm, what it touches, and how all of it errs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.arm.file import load_arm
+from ulna.arm.model import Arm
+from ulna.artefacts.kinds import check_kinds, make_artefact
+from ulna.formats.models import fill
+from ulna.formats.toml import check_format, read_toml
+from ulna.formats.units import Units
+from ulna.ground.errors import UlnaInputError
+from ulna.simulation.spec import Drawing, Missed, Simulation, Temperature, Touching
+from ulna.simulation.tables import (
+    DrawingTable,
+    SimulatedPlane,
+    SimulatedTable,
+    SimulationFile,
+    TemperatureTable,
+    TravelTable,
+    VolumeTable,
+)
+from ulna.study.data import FitOptions
+
+WHAT = 'a simulation file (TOML, format = "ulna-simulation/1")'
+
+F64 = NDArray[np.float64]
+
+#: what is not said of a kind
+PLACEMENTS = {"seat": 1, "bar": 100, "length": 100}
+TOUCHES = {"seat": 30, "sphere": 20, "plane": 20}
+
+
+def load_simulation(path: Path) -> Simulation:
+    """Read what to simulate, and the true arm that it names. Raises UlnaInputError."""
+    document, _ = read_toml(path, WHAT)
+    check_format(document, path, "ulna-simulation")
+    check_kinds(document, path)
+    file = fill(SimulationFile, document, path)
+    units, arm_path = file.units, path.parent / file.arm
+    arm = _counted(file, load_arm(arm_path), path)
+    files = [path, arm_path]
+    touching = [_touching(name, table, units, path, files) for name, table in file.artefact.items()]
+    encoder = file.noise.encoder
+    return Simulation(
+        arm=arm,
+        touching=touching,
+        seed=file.seed,
+        drawing=_drawing(file.drawing, units),
+        encoder_rad=None if encoder is None else encoder_of(encoder, arm, path) * units.rad,
+        seat_mm=file.noise.seat * units.mm,
+        quantised=file.noise.quantise,
+        travel_rad=travel_of(file.travel, arm, units, path),
+        temperature=_temperature(file.temperature, arm, path),
+        missed=None if file.missed is None else Missed(file.missed.share, file.missed.size * units.mm),
+        volume_mm=volume_of(file.volume, units, path),
+        fit=FitOptions(**file.fit.model_dump()),
+        path=path,
+        files=tuple(files),
+    )
+
+
+def _touching(name: str, table: SimulatedTable, units: Units, path: Path, files: list[Path]) -> Touching:
+    key = f"{path}: key 'artefact.{name}"
+    for needed in ("length", "features"):
+        if hasattr(table, needed) and getattr(table, needed) is None:
+            raise UlnaInputError(f"{key}.{needed}' is missing; a simulation needs to know what is touched. Add it.")
+    artefact, features_file = make_artefact(name, table, units, path, [])
+    if features_file is not None:
+        files.append(features_file.path)
+    fixed = artefact.frame == "arm"
+    if fixed and (table.placements or 1) != 1:
+        raise UlnaInputError(
+            f"{key}.placements': got {table.placements}, but its coordinates are in the arm's frame: it stands in one "
+            "place. Remove the key, or give touches."
+        )
+    if artefact.kind == "length" and (table.touches or 1) != 1:
+        raise UlnaInputError(
+            f"{key}.touches': got {table.touches}, but a row of lengths is two poses; expected 1. Remove the key, and "
+            "give placements: the number of rows."
+        )
+    if artefact.kind == "length" and isinstance(table.probe, list) and len(table.probe) > 1:
+        raise UlnaInputError(f"{key}.probe': got {len(table.probe)} probes; expected one. Correct it.")
+    size = table.size if isinstance(table, SimulatedPlane) else None
+    return Touching(
+        artefact=artefact,
+        placements=table.placements or (1 if fixed else PLACEMENTS.get(artefact.kind, 5)),
+        touches=table.touches or TOUCHES.get(artefact.kind, 1),
+        probes=() if table.probe is None else (table.probe,) if isinstance(table.probe, str) else tuple(table.probe),
+        size_mm=(200.0, 200.0) if size is None else (size[0] * units.mm, size[1] * units.mm),
+    )
+
+
+def _drawing(table: DrawingTable | str, units: Units) -> Drawing | None:
+    if isinstance(table, str):
+        return None
+    usual = Drawing()
+    return Drawing(
+        offset_rad=usual.offset_rad if table.offset is None else table.offset * units.rad,
+        length_mm=usual.length_mm if table.length is None else table.length * units.mm,
+        twist_rad=None if table.twist is None else table.twist * units.rad,
+        effects=table.effects,
+    )
+
+
+def _one_per_joint(given: float | list[float], arm: Arm, key: str, path: Path) -> list[float]:
+    each = given if isinstance(given, list) else [given] * arm.n
+    if len(each) != arm.n:
+        raise UlnaInputError(
+            f"{path}: key '{key}': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
+            f"'{arm.name}'. Correct it."
+        )
+    return each
+
+
+def encoder_of(given: float | list[float], arm: Arm, path: Path) -> F64:
+    """(n,) in the file's angle unit. Raises UlnaInputError."""
+    each = _one_per_joint(given, arm, "noise.encoder", path)
+    if any(each) and not all(each):
+        raise UlnaInputError(
+            f"{path}: key 'noise.encoder': got 0 for joint {each.index(0.0) + 1}, but noise for others; expected none "
+            "at all or more than 0 for each: a study cannot state a single joint as exact. Correct it."
+        )
+    return np.array(each, dtype=np.float64)
+
+
+def _counted(file: SimulationFile, arm: Arm, path: Path) -> Arm:
+    given = file.noise.counts_per_turn
+    if given is None:
+        return arm
+    each = _one_per_joint(given, arm, "noise.counts_per_turn", path)
+    joints = [replace(joint, counts_per_turn=float(counts)) for joint, counts in zip(arm.joints, each, strict=True)]
+    return replace(arm, joints=tuple(joints))
+
+
+def travel_of(table: TravelTable | None, arm: Arm, units: Units, path: Path) -> F64 | None:
+    """(n, 2) rad, within the arm's limits. Raises UlnaInputError."""
+    if table is None:
+        return None
+    pairs = table.limits * arm.n if len(table.limits) == 1 else table.limits
+    if len(pairs) != arm.n:
+        raise UlnaInputError(
+            f"{path}: key 'travel.limits': got {len(pairs)} pairs, expected one, or {arm.n}: one per joint of arm "
+            f"'{arm.name}'. Correct it."
+        )
+    travel_rad = np.array(pairs) * units.rad
+    for k, ((low, high), joint) in enumerate(zip(travel_rad.tolist(), arm.joints, strict=True), start=1):
+        if not low < high:
+            raise UlnaInputError(
+                f"{path}: key 'travel.limits': got {pairs[k - 1]} for joint {k}, expected the lower limit first. Swap "
+                "them."
+            )
+        own = joint.limits_rad
+        if own is not None and (low < own[0] - 1e-9 or high > own[1] + 1e-9):
+            raise UlnaInputError(
+                f"{path}: key 'travel.limits': got {low:g} to {high:g} rad for joint {k}, but the arm file's limits "
+                f"are {own[0]:g} to {own[1]:g} rad; expected a travel within them. Correct one of them."
+            )
+    return travel_rad
+
+
+def _temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> Temperature | None:
+    if table is None:
+        return None
+    if "link-expansion" not in arm.extras:
+        raise UlnaInputError(
+            f"{path}: key 'temperature': nothing of arm '{arm.name}' grows with temperature; expected expansion (1/K) "
+            "of its joints in the arm file. Add it, or remove the key."
+        )
+    return Temperature(table.mean, table.spread)
+
+
+def volume_of(
+    table: VolumeTable | None, units: Units, path: Path, key: str = "volume"
+) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+    """Corners of a box, mm. Raises UlnaInputError."""
+    if table is None:
+        return None
+    (x, y, z), (right, back, top) = table.low, table.high
+    if not (x < right and y < back and z < top):
+        raise UlnaInputError(
+            f"{path}: key '{key}': got low {table.low} and high {table.high}; expected every coordinate of low below "
+            "that of high. Swap or correct them."
+        )
+    mm = units.mm
+    return (x * mm, y * mm, z * mm), (right * mm, back * mm, top * mm)

@@ -1,0 +1,183 @@
+"""Simulate: a virtual arm with known truth touches artefacts, and its readings become a study, ready to calibrate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.arm.effects.effects import Effects
+from ulna.arm.model import Arm
+from ulna.formats.output import output_folder, refuse_inputs
+from ulna.ground.errors import UlnaInputError
+from ulna.simulation.account import account
+from ulna.simulation.mover import Mover
+from ulna.simulation.reading_errors import ReadingErrors, as_drawn
+from ulna.simulation.spec import Simulation, Touching
+from ulna.simulation.standing import Standings, stand
+from ulna.simulation.study_files import names_for, texts, write_tables
+from ulna.simulation.touches import probes_of, touches_of, true_artefact
+from ulna.study.data import Artefact, Noise, Readings, Study
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class TrueTouching:
+    """What nobody knows of the readings of one artefact."""
+
+    artefact: Artefact
+    """As it really is."""
+    standings: Standings
+    """Where it stood, and the true encoder angles."""
+
+    @property
+    def missed(self) -> NDArray[np.bool_]:
+        """(N,) readings that are missed touches; length rows: of either end."""
+        missed = self.standings.missed
+        return np.asarray(missed.any(axis=1)) if self.artefact.kind == "length" else missed.reshape(-1)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The true arm and artefacts behind simulated readings."""
+
+    arm: Arm
+    touchings: list[TrueTouching]
+    """One for each of the study's readings, in their order."""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A study, and the truth behind it."""
+
+    simulation: Simulation
+    study: Study
+    """Ready for `calibrate`: the arm as drawn, the readings, the stated noise."""
+    truth: Truth
+
+    def as_dict(self) -> dict[str, Any]:
+        """`truth.json`: JSON types only, no NaN."""
+        return account(self)
+
+    @property
+    def files(self) -> list[str]:
+        """Names of the files that `save` writes."""
+        return names_for(group.artefact for group in self.study.readings)
+
+    def save(self, folder: str | Path, force: bool = False) -> None:
+        """Write arm.toml, study.toml, the readings of each artefact (NAME.csv; of points NAME-features.csv as well),
+        truth.toml (the true arm) and truth.json. Raises UlnaInputError; nothing that was read is overwritten."""
+        folder = Path(folder)
+        refuse_inputs((folder / name for name in self.files), self.simulation.files)
+        with output_folder(folder, self.files, force) as staging:
+            for name, text in texts(self.study, self.truth.arm, self.as_dict()).items():
+                (staging / name).write_text(text, encoding="utf-8")
+            write_tables(self.study, self.simulation.step_rad, staging)
+
+
+def simulate(simulation: Simulation | str | Path, progress: Progress | None = None) -> Simulated:
+    """Simulate what a specification says, or the file `ulna-simulation/1` that holds it.
+
+    `progress` is called with (stage, done, total). The same seed gives the same numbers; each artefact has draws of its
+    own. Raises UlnaInputError where probes do not fit or an artefact is out of reach; KeyboardInterrupt.
+    """
+    if not isinstance(simulation, Simulation):
+        from ulna.simulation.file import load_simulation
+
+        simulation = load_simulation(Path(simulation))
+    if simulation.arm.unknown_signs.any():
+        raise UlnaInputError(
+            f"{simulation.label}: arm '{simulation.arm.name}': the sign of a joint is 0 (not known); expected 1 or -1 "
+            "of every joint: this arm is the truth. State it."
+        )
+    _check_names(simulation)
+    mover = Mover(simulation.arm, _checked_travel(simulation))
+    probes = [probes_of(touching, simulation.arm, simulation.label) for touching in simulation.touching]
+    readings, touchings = [], []
+    for number, touching in enumerate(simulation.touching):
+        true = true_artefact(touching.artefact, np.random.default_rng([simulation.seed, number, 1]))
+        touches = touches_of(touching, true, simulation.arm, probes[number])
+        standings = stand(simulation, mover, touching, touches, number, progress)
+        rng = np.random.default_rng([simulation.seed, number, 2])
+        readings.append(_readings(simulation, touching, touches.probe, touches.feature, standings, rng))
+        touchings.append(TrueTouching(true, standings))
+    u_rad, seat_mm = simulation.reading_u_rad, simulation.seat_mm or None
+    noise = None if u_rad is None and seat_mm is None else Noise(u_rad, seat_mm)
+    study = Study(None, drawn(simulation), readings, noise, simulation.fit)
+    return Simulated(simulation, study, Truth(simulation.arm, touchings))
+
+
+def drawn(simulation: Simulation) -> Arm:
+    """The arm as it is written down."""
+    arm, drawing = simulation.arm, simulation.drawing
+    if drawing is None:
+        return replace(arm, uncertainty=None)
+    if not drawing.effects:
+        joints = [
+            replace(joint, effects=Effects(mass_kg=joint.effects.mass_kg, centre_mm=joint.effects.centre_mm))
+            for joint in arm.joints
+        ]
+        arm = replace(arm, joints=tuple(joints))
+    rng = np.random.default_rng([simulation.seed, 0, 3])
+    return as_drawn(arm, rng, drawing.offset_rad, drawing.length_mm, drawing.twist_rad)
+
+
+def _check_names(simulation: Simulation) -> None:
+    """Each artefact gives a file its name. Raises UlnaInputError for two that some disks do not tell apart."""
+    seen: dict[str, str] = {}
+    for touching in simulation.touching:
+        name = touching.artefact.name
+        other = seen.setdefault(name.casefold().removesuffix("-features"), name)
+        if other != name:
+            raise UlnaInputError(
+                f"{simulation.label}: artefacts '{other}' and '{name}' would give their files the same name on some "
+                "disks; expected names that differ by more. Rename one."
+            )
+
+
+def _checked_travel(simulation: Simulation) -> F64:
+    limits_rad = simulation.limits_rad
+    for k, (low, high) in enumerate(limits_rad.tolist(), start=1):
+        if not low < high:
+            raise UlnaInputError(
+                f"{simulation.label}: joint {k} of arm '{simulation.arm.name}' has no travel left: the encoder's noise "
+                "and one count are as wide as its limits; expected a wider travel or less noise. Correct it."
+            )
+    return limits_rad
+
+
+def _readings(
+    simulation: Simulation,
+    touching: Touching,
+    probe: NDArray[np.int64],
+    feature: NDArray[np.int64],
+    standings: Standings,
+    rng: np.random.Generator,
+) -> Readings:
+    """What the encoders read, row after row."""
+    places, per, n = standings.q_rad.shape
+    encoder_rad = np.zeros(n) if simulation.encoder_rad is None else simulation.encoder_rad
+    read_rad = ReadingErrors(encoder_rad, simulation.seat_mm, simulation.step_rad).read(standings.q_rad, rng)
+    pairs = touching.artefact.kind == "length"
+    rows = places if pairs else places * per
+    length_mm = np.full(rows, touching.artefact.length_mm or 0.0) if pairs else None
+    labels = np.arange(1, places + 1).astype(str).astype(object)
+    temperature_c = standings.temperature_c
+    return Readings(
+        artefact=touching.artefact,
+        q_rad=np.ascontiguousarray(read_rad[:, 0] if pairs else read_rad.reshape(rows, n)),
+        p_rad=np.ascontiguousarray(read_rad[:, 1]) if pairs else None,
+        length_mm=length_mm,
+        probe=np.tile(probe[:1] if pairs else probe, places),
+        feature=np.zeros(rows, np.int64) if pairs else np.tile(feature, places),
+        placement=np.repeat(labels, rows // places),
+        row=np.arange(1, rows + 1),
+        file=np.zeros(rows, np.int64),
+        temperature_c=None if temperature_c is None else np.repeat(temperature_c, rows // places),
+    )

@@ -1,0 +1,181 @@
+"""The tables of a simulation file, `ulna-simulation/1`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from ulna.arm.effects.effects import Extra
+from ulna.artefacts.kinds import BarTable, LengthTable, PlaneTable, PointsTable, SeatTable, SphereTable
+from ulna.formats.models import Strict
+from ulna.formats.units import Units
+from ulna.study.data import Loss
+
+Positive = Annotated[float, Field(gt=0)]
+Amount = Annotated[float, Field(ge=0)]
+Count = Annotated[int, Field(ge=1, le=10_000_000)]
+
+
+def _each_kind(value: Any) -> str:
+    return "<each>" if isinstance(value, list) else "<all>"
+
+
+AmountEach = Annotated[
+    Annotated[Amount, Tag("<all>")] | Annotated[list[Amount], Tag("<each>")], Discriminator(_each_kind)
+]
+PositiveEach = Annotated[
+    Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_each_kind)
+]
+Probes = Annotated[
+    Annotated[str, Tag("<all>")] | Annotated[Annotated[list[str], Field(min_length=1)], Tag("<each>")],
+    Discriminator(_each_kind),
+]
+
+
+class Touched(Strict):
+    """How an artefact is touched, beside what it is."""
+
+    placements: Count | None = None
+    """How often it stands somewhere (seat: 1; bar: 100; length: 100 rows; others: 5)."""
+    touches: Count | None = None
+    """Of each feature with each probe at each placement (seat: 30; others: 1); of a sphere or plane: in all (20)."""
+    probe: Probes | None = None
+    """One, or a list; the arm's only one where it is not given."""
+
+
+class SimulatedBar(BarTable, Touched):
+    """A bar, and how it is touched."""
+
+
+class SimulatedSeat(SeatTable, Touched):
+    """A seat, and how it is touched."""
+
+
+class SimulatedPoints(PointsTable, Touched):
+    """Points, and how they are touched."""
+
+
+class SimulatedLength(LengthTable, Touched):
+    """Pairs of poses a known length apart, and how many."""
+
+
+class SimulatedSphere(SphereTable, Touched):
+    """A sphere, and how it is touched: over one half of it."""
+
+
+class SimulatedPlane(PlaneTable, Touched):
+    """A plane, and how it is touched: over a rectangle."""
+
+    size: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
+    """Sides of the rectangle (200 mm by 200 mm)."""
+
+
+def _kind(table: Any) -> str:
+    return f"<{table.get('kind') if isinstance(table, dict) else getattr(table, 'kind', None)}>"
+
+
+SimulatedTable = Annotated[
+    Annotated[SimulatedBar, Tag("<bar>")]
+    | Annotated[SimulatedSeat, Tag("<seat>")]
+    | Annotated[SimulatedPoints, Tag("<points>")]
+    | Annotated[SimulatedLength, Tag("<length>")]
+    | Annotated[SimulatedSphere, Tag("<sphere>")]
+    | Annotated[SimulatedPlane, Tag("<plane>")],
+    Discriminator(_kind),
+]
+
+
+class DrawingTable(Strict):
+    """How far the arm.toml that is written is from the true arm."""
+
+    offset: Amount | None = None
+    """Zero offsets are off by up to so much (0.05 rad)."""
+    length: Amount | None = None
+    """Lengths are, those of the probes too (1 mm)."""
+    twist: Amount | None = None
+    """Twists are; without it the drawing says the nearest right angle."""
+    effects: bool = False
+    """Whether it has the true arm's effects beyond geometry."""
+
+
+def _drawing_kind(drawing: Any) -> str:
+    return "<word>" if isinstance(drawing, str) else "<table>"
+
+
+class NoiseTable(Strict):
+    """How readings err; standard deviations."""
+
+    encoder: AmountEach | None = None
+    """In the file's angle unit; one number, or one per joint."""
+    seat: Amount = 0.0
+    """Of a touch, per coordinate, in the file's length unit."""
+    counts_per_turn: PositiveEach | None = None
+    """Of the encoders, in place of what the arm file says; one number, or one per joint."""
+    quantise: bool = True
+    """Whether encoders read whole counts, where counts_per_turn is known of all."""
+
+
+class TravelTable(Strict):
+    """How far joints turn, where the arm file does not say it or they shall turn less."""
+
+    limits: Annotated[list[Annotated[list[float], Field(min_length=2, max_length=2)]], Field(min_length=1)]
+    """Lowest and highest encoder angle, one pair for all joints or one per joint."""
+
+
+class TemperatureTable(Strict):
+    """Of the arm, °C, drawn for each placement; the true arm needs expansion."""
+
+    mean: float
+    spread: Amount = 0.0
+    """Standard deviation."""
+
+
+class MissedTable(Strict):
+    """Touches with the ball beside its seat, or off the surface."""
+
+    share: Annotated[float, Field(ge=0, le=0.5)]
+    """Of all touches."""
+    size: Positive
+    """How far off the ball is."""
+
+
+class VolumeTable(Strict):
+    """The box, in the base frame, in which artefacts are touched."""
+
+    low: Annotated[list[float], Field(min_length=3, max_length=3)]
+    high: Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class SimulatedFit(Strict):
+    """[fit] of the study that is written."""
+
+    hold: list[str] = Field(default_factory=list)
+    free: list[str] = Field(default_factory=lambda: ["*"])
+    loss: Loss = "none"
+    start: Literal["given", "search"] = "given"
+    extras: list[Extra] = Field(default_factory=list)
+    harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
+    judge_extras: bool = True
+
+
+class SimulationFile(Strict):
+    """What to simulate: `ulna-simulation/1`."""
+
+    format: Literal["ulna-simulation/1"]
+    arm: str
+    """Path of the arm file of the true arm, relative to this file."""
+    units: Units
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
+    drawing: Annotated[
+        Annotated[Literal["exact"], Tag("<word>")] | Annotated[DrawingTable, Tag("<table>")],
+        Discriminator(_drawing_kind),
+    ] = DrawingTable()
+    """How far the arm that is written is off; "exact": not at all."""
+    noise: NoiseTable = NoiseTable()
+    travel: TravelTable | None = None
+    temperature: TemperatureTable | None = None
+    missed: MissedTable | None = None
+    volume: VolumeTable | None = None
+    artefact: Annotated[dict[str, SimulatedTable], Field(min_length=1)]
+    fit: SimulatedFit = SimulatedFit()

@@ -1,0 +1,1 @@
+"""What to fit to what: a study, its file, its readings, and how it enters the core."""

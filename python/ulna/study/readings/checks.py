@@ -1,0 +1,204 @@
+"""Readings that are numbers, but cannot be what was meant; and readings to be remarked upon.
+
+Rows that repeat: the same encoder angles with the same probe at the same feature of the same placement (or the same two
+poses with the same length) is a copy, remarked upon and used. The same angles at two features of one placement, or the
+same two poses with two lengths, contradict each other: an error. So do two different rows with one `id`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.arm.model import Arm
+from ulna.formats.header import Header
+from ulna.ground.errors import UlnaInputError
+from ulna.study.data import InputFile, Readings
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+#: no arm's joint turns farther than this from its zero: two turns
+MOST_RAD = 4.0 * math.pi
+
+#: rows named in a remark
+SHOWN = 5
+
+
+def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
+    """The probe that a file's key names; the arm's only one where it names none. Raises UlnaInputError."""
+    try:
+        return list(arm.probes)[arm.probe_index(probe)]
+    except UlnaInputError as error:
+        raise UlnaInputError(f"{path}: key 'probe': {error} Correct it.") from None
+
+
+def check_scale(q_rad: F64, letter: str, factors: F64, unit: str, header: Header, row: I64) -> None:
+    """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit."""
+    for k, factor in enumerate(factors):
+        column = q_rad[:, k]
+        if max(column.max(), -column.min()) <= MOST_RAD:
+            continue
+        first = int(np.argmax(np.abs(column) > MOST_RAD))
+        asked = {"rad": "degrees or counts", "deg": "counts", "counts": "counts, and is counts_per_turn right"}[unit]
+        remedy = (
+            "Correct counts_per_turn or the column." if unit == "counts" else "State the unit with the key 'angle'."
+        )
+        raise UlnaInputError(
+            f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got "
+            f"{column[first] / factor:g} {unit}, more than two turns; expected angles within ±4π rad (720°). Are "
+            f"these {asked}? {remedy}"
+        )
+
+
+def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:
+    """One id, one reading. Raises UlnaInputError where two different rows have the same id."""
+    if "id" not in frame.columns or not frame["id"].is_duplicated().any():
+        return
+    numbered = frame.with_columns(pl.Series("row", row))
+    at = numbered.unique(subset=frame.columns, keep="first", maintain_order=True)
+    again = at.filter(pl.col("id").is_duplicated())
+    if len(again):
+        value = again["id"][0]
+        first, second = again.filter(pl.col("id") == value)["row"][:2].to_list()
+        raise UlnaInputError(
+            f"{header.path}: {header.at(second, 'id')}: '{value}' stands in row {first} already, with other "
+            "values; expected one reading per id. Correct or remove one of them."
+        )
+
+
+def check_limits(group: Readings, arm: Arm, files: list[InputFile], remarks: list[str]) -> None:
+    """Remark upon readings outside a joint's limits."""
+    for letter, q_rad in (("q", group.q_rad), ("p", group.p_rad)):
+        if q_rad is None:
+            continue
+        for index in np.unique(group.file).tolist():
+            own = group.file == index
+            remark_limits(q_rad[own], group.row[own], letter, arm, files[index].path, remarks)
+
+
+def remark_limits(q_rad: F64, row: I64, letter: str, arm: Arm, path: Path, remarks: list[str]) -> None:
+    """The same of (N, n) readings of one file, in the rows (N,) and the columns q1 … or p1 … of it."""
+    for k, joint in enumerate(arm.joints):
+        if joint.limits_rad is None:
+            continue
+        low, high = joint.limits_rad
+        column = q_rad[:, k]
+        rows = np.flatnonzero((column < low) | (column > high))
+        if not len(rows):
+            continue
+        worst = rows[np.argmax(np.maximum(low - column[rows], column[rows] - high))]
+        remarks.append(
+            f"{path}: column '{letter}{k + 1}': {_count(len(rows), 'reading')} outside the "
+            f"limits of joint {k + 1} ({low:g} to {high:g} rad): {_rows(row[rows])}; the farthest is "
+            f"{column[worst]:.6g} rad in row {row[worst]}. Check the limits in the arm file, or the "
+            "readings."
+        )
+
+
+def check_bar_ends(group: Readings, files: list[InputFile], study: Path) -> None:
+    """A placement of a bar tells a length only where both of its seats were touched. Raises UlnaInputError."""
+    if group.artefact.kind != "bar":
+        return
+    code = group.placement_code
+    names = list(group.artefact.features)
+    touched = np.array([np.bincount(code[group.feature == k], minlength=code.max() + 1) for k in range(len(names))])
+    for k, name in enumerate(names):
+        without = np.flatnonzero(touched[k] == 0)
+        if not len(without):
+            continue
+        rows = np.flatnonzero(code == without[0])
+        more = f" (and {len(without) - 1} more such placements)" if len(without) > 1 else ""
+        raise UlnaInputError(
+            f"{study}: artefact '{group.artefact.name}', placement '{group.placement[rows[0]]}'{more}: feature "
+            f"'{name}' was never touched, only '{names[1 - k]}' ({_rows(group.row[rows])} of "
+            f"{files[group.file[rows[0]]].path}); expected readings at both ends of a bar. Touch the other end too, "
+            "remove these rows, or declare a seat for them."
+        )
+
+
+def check_repeats(group: Readings, files: list[InputFile], remarks: list[str], own_points: bool = False) -> None:
+    """Remark upon copies of a reading; raise UlnaInputError for readings that contradict each other.
+
+    own_points: every reading touched a point of its own, measured along with it: that two differ is no contradiction.
+    """
+    candidates = _same_angles(group)
+    first_of: dict[bytes, list[int]] = defaultdict(list)
+    for k in candidates.tolist():
+        key = group.q_rad[k].tobytes() + (b"" if group.p_rad is None else group.p_rad[k].tobytes())
+        first_of[key + group.probe[k].tobytes()].append(k)
+    copies: list[tuple[int, int]] = []
+    points = list(group.artefact.features.values())
+    for rows in first_of.values():
+        seen: dict[object, int] = {}
+        for k in rows:
+            standing = group.placement[k] if group.artefact.frame == "free" else ""
+            where = (standing, points[group.feature[k]] if own_points else None)
+            first = seen.setdefault(where, k)
+            if first == k:
+                continue
+            if group.length_mm is not None and group.length_mm[k] != group.length_mm[first]:
+                raise _contradiction(group, files, first, k, "length", "the same two poses")
+            if group.feature[k] != group.feature[first] and not own_points:
+                raise _contradiction(group, files, first, k, "feature", "the same encoder angles")
+            copies.append((k, first))
+    copies.sort()
+    for index in sorted({int(group.file[k]) for k, _ in copies}):
+        own = [(k, first) for k, first in copies if group.file[k] == index]
+        named = [f"{group.row[k]} (as {_place(group, files, first, index)})" for k, first in own[:SHOWN]]
+        remarks.append(
+            f"{files[index].path}: {_count(len(own), 'row')} of artefact '{group.artefact.name}' "
+            f"repeat{'s' * (len(own) == 1)} another exactly: row{'s' * (len(own) > 1)} "
+            f"{', '.join(named)}{', …' if len(own) > SHOWN else ''}. They count as readings of their own; remove them "
+            "if they are copies."
+        )
+
+
+def _same_angles(group: Readings) -> I64:
+    """Indices of rows whose angles are those of another row, up to rare accidents of the hash."""
+    mixed = group.probe.astype(np.uint64)
+    for q_rad in (group.q_rad, group.p_rad):
+        for column in () if q_rad is None else q_rad.T:
+            mixed = (mixed ^ np.ascontiguousarray(column).view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+            mixed ^= mixed >> np.uint64(29)
+    order = np.argsort(mixed, kind="stable")
+    equal = mixed[order][1:] == mixed[order][:-1]
+    marked = np.zeros(len(mixed), dtype=bool)
+    marked[order[1:][equal]] = True
+    marked[order[:-1][equal]] = True
+    return np.flatnonzero(marked)
+
+
+def _contradiction(
+    group: Readings, files: list[InputFile], first: int, k: int, column: str, same: str
+) -> UlnaInputError:
+    index = int(group.file[k])
+    names = list(group.artefact.features)
+    values = [
+        f"'{names[group.feature[row]]}'" if column == "feature" else f"{(group.length_mm[row]):g} mm"  # type: ignore[index]
+        for row in (k, first)
+    ]
+    return UlnaInputError(
+        f"{files[index].path}: row {group.row[k]}, column '{column}': got {values[0]}, but "
+        f"{_place(group, files, first, index)} has {same} with {values[1]}; expected one {column} for one reading. "
+        "Correct or remove one of the two rows."
+    )
+
+
+def _place(group: Readings, files: list[InputFile], k: int, index: int) -> str:
+    other = int(group.file[k])
+    return f"row {group.row[k]}" + ("" if other == index else f" of {files[other].path}")
+
+
+def _rows(rows: I64) -> str:
+    named = ", ".join(str(row) for row in rows[:SHOWN].tolist())
+    return f"row{'s' * (len(rows) > 1)} {named}{', …' if len(rows) > SHOWN else ''}"
+
+
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}{'s' * (count > 1)}"

@@ -1,0 +1,223 @@
+"""The columns of a readings file: which there may be, and which value the study gives where one is left out."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ulna.formats.header import Header
+from ulna.formats.layout import TableKeys
+from ulna.formats.rows import Condition, SplitTable
+from ulna.ground.errors import UlnaInputError, nearest
+
+I64 = NDArray[np.int64]
+
+#: unused columns named in a remark
+MOST_SHOWN = 24
+
+NAMES = ("id", "probe", "artefact", "placement", "feature")
+
+
+COORDINATES = ("x", "y", "z", "u")
+
+
+def is_numeric(column: str) -> bool:
+    """Whether a column of a readings file holds numbers; the others hold names."""
+    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*|[xyzu]", column) is not None
+
+
+def known_columns(joints: int, coordinates: bool) -> list[str]:
+    """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
+    their own."""
+    several = [f"{name}{k}" for name in ("q", "p", "temperature") for k in range(1, joints + 1)]
+    return [*NAMES, "length", "temperature", *several, *(COORDINATES if coordinates else ())]
+
+
+def check_columns(
+    header: Header,
+    joints: int,
+    arm: str,
+    remarks: list[str],
+    coordinates: bool = False,
+    asked: Collection[str] = (),
+) -> list[str]:
+    """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon,
+    unless it is one of `asked`, of which the study speaks. Returns the known columns that are there."""
+    for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
+        _check_angles(header, letter, joints, arm)
+    each = [f"temperature{k}" for k in range(1, joints + 1)]
+    there = [column for column in header.columns if re.fullmatch(r"temperature[0-9]+", column)]
+    if there and (sorted(there) != sorted(each) or "temperature" in header.columns):
+        raise UlnaInputError(
+            f"{header.path}: {header.head}: the temperature columns are {', '.join(there)}; expected one column "
+            f"temperature, or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the "
+            "header."
+        )
+    known = known_columns(joints, coordinates)
+    words = [name for name in known if not name[-1].isdecimal()]
+    remark_strange(header, known, words, remarks, asked)
+    return [column for column in header.columns if column in known]
+
+
+def remark_strange(
+    header: Header, known: Sequence[str], words: Sequence[str], remarks: list[str], asked: Collection[str] = ()
+) -> None:
+    """Remark upon the columns that nobody uses. Raises UlnaInputError for one whose name is nearly one of `words`, if
+    that is not there: a slip, most likely."""
+    strange = [column for column in header.columns if column not in known and column not in asked]
+    lacking = [name for name in words if name not in header.columns]
+    for column in strange:
+        slips = difflib.get_close_matches(column.lower(), lacking, n=1, cutoff=0.8)
+        if slips:
+            raise UlnaInputError(
+                f"{header.path}: unknown column '{column}'. Did you mean '{slips[0]}'? Rename or map it; a column that "
+                "is not meant needs a name that is not so near."
+            )
+    if strange:
+        runs = _runs(strange)
+        shown = ", ".join(runs[:MOST_SHOWN]) + (f", … ({len(strange)} in all)" if len(runs) > MOST_SHOWN else "")
+        remarks.append(f"{header.path}: not used: the column{'s' * (len(strange) > 1)} {shown}.")
+
+
+def _runs(names: Sequence[str]) -> list[str]:
+    """Names in order, those that are numbered one after the other told shortly: `force1 … force6`."""
+    found: list[list[str]] = []
+    for name in names:
+        stem, number = re.fullmatch(r"(.*?)([0-9]*)", name, re.DOTALL).groups()  # type: ignore[union-attr]
+        if found and number and found[-1][-1] == f"{stem}{int(number) - 1}":
+            found[-1].append(name)
+        else:
+            found.append([name])
+    return [run[0] if len(run) == 1 else f"{run[0]} … {run[-1]}" if len(run) > 2 else ", ".join(run) for run in found]
+
+
+def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
+    expected = [f"{letter}{k}" for k in range(1, joints + 1)]
+    there = [column for column in header.columns if re.fullmatch(letter + "[0-9]+", column)]
+    missing = [column for column in expected if column not in there]
+    extra = [column for column in there if column not in expected]
+    if not missing and not extra:
+        return
+    if header.columns[0].startswith("#"):
+        raise UlnaInputError(
+            f"{header.path}: {header.head} begins with '#' ({', '.join(header.columns)[:60]}); expected the header "
+            f"with {expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
+        )
+    slips = [column for column in header.columns if column.lower() in missing]
+    origin = next(filter(None, map(header.origin, [*extra, *(c for c in header.columns if c == letter)])), "")
+    has = (
+        f"{len(there)} column{'s' * (len(there) > 1)} {letter}…"
+        if there
+        else f"none such ({', '.join(header.columns)[:80]})"
+    )
+    what = f"the column '{missing[0]}' is missing" if missing else f"the column '{extra[0]}' is one too many"
+    raise UlnaInputError(
+        f"{header.path}: {what}: the file has {has}, arm '{arm}' has {joints} joints; "
+        f"expected {expected[0]} … {expected[-1]}. "
+        + (
+            f"Rename '{slips[0]}', or map it with the key 'columns'."
+            if slips
+            else f"{origin}: expected numbers, one row for each reading. Write it so, or name the right arm."
+            if origin
+            else "Map the file's columns with the key 'columns', name the right arm, or correct the header."
+        )
+    )
+
+
+class ReadingsEntry(TableKeys):
+    """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
+
+    file: str
+    """Path, relative to the study file."""
+    angle: Literal["rad", "deg", "counts"] | None = None
+    """Unit of the encoder angles; the study's angle unit where it is not given."""
+    artefact: str | None = None
+    probe: str | None = None
+    placement: str | None = None
+    feature: str | None = None
+    where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
+    """Filter: column = what it must hold. A text, a number, a list of these, or limits `{ above, below }`."""
+    split: SplitTable | None = None
+    """Which rows are fitted and which are kept to check the fit."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a readings file stands in its study."""
+
+    study: Path
+    key: str
+    """`readings.2`: its table in the study."""
+    entry: ReadingsEntry
+    index: int
+    """Into `Study.files`."""
+    arm_file: Path
+
+
+def codes(
+    frame: pl.DataFrame,
+    header: Header,
+    source: Source,
+    column: Literal["artefact", "probe", "feature"],
+    known: list[str],
+    owner: str,
+    row: I64,
+    remarks: list[str] | None = None,
+) -> I64 | int:
+    """Index into `known` of each row, or one for all rows. Raises UlnaInputError for a name that is not known."""
+    given: str | None = getattr(source.entry, column)
+    if column in frame.columns:
+        if remarks is not None:
+            remark_unused(frame, header, source, column, remarks)
+        names = frame[column]
+        if len(known) == 1:  # nothing needs to be said where there is one choice
+            names = names.replace("", known[0])
+        strange = ~names.is_in(known)
+        if strange.any():
+            first = int(strange.arg_true()[0])
+            if names[first] == "":
+                raise UlnaInputError(header.refusal(int(row[first]), column, is_numeric))
+            at = header.at(int(row[first]), column)
+            raise UlnaInputError(
+                f"{header.path}: {at}: got '{names[first]}', which {owner} does not have."
+                f"{nearest(names[first], known)} Correct the cell, or add the {column}."
+            )
+        return names.replace_strict(known, list(range(len(known))), return_dtype=pl.Int64).to_numpy()
+    if given is not None:
+        if given not in known:
+            raise UlnaInputError(
+                f"{source.study}: key '{source.key}.{column}': got '{given}', which {owner} does not have."
+                f"{nearest(given, known)} Correct it."
+            )
+        return known.index(given)
+    if len(known) == 1:
+        return 0
+    raise UlnaInputError(
+        f"{header.path}: there is no column '{column}', and {source.study} has no key '{source.key}.{column}'; "
+        f"expected one of {', '.join(known[:8])}{', …' if len(known) > 8 else ''} ({owner} has {len(known)}). Add the "
+        "column or the key."
+    )
+
+
+def remark_unused(frame: pl.DataFrame, header: Header, source: Source, column: str, remarks: list[str]) -> None:
+    """The study's value fills a missing column; where there is one, say that the file's own cells are used."""
+    given: str | None = getattr(source.entry, column)
+    if given is not None and bool((frame[column] != given).any()):
+        key = f"{source.study}: key '{source.key}.{column}'"
+        remark = f"{key} = '{given}' is not used: {header.path} has its own column '{column}'."
+        if remark not in remarks:
+            remarks.append(remark)
+
+
+def each_row(code: I64 | int, count: int) -> I64:
+    """(count,) where one code stands for all rows."""
+    return np.full(count, code, dtype=np.int64) if isinstance(code, int) else code

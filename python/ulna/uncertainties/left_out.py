@@ -1,0 +1,34 @@
+"""What is not in the figures of an uncertainty, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.arm.model import Arm
+
+F64 = NDArray[np.float64]
+
+
+def left_out(
+    arm: Arm, encoder_rad: F64 | None, seat_mm: float | None, u_temperature_k: float, exact: list[str]
+) -> list[str]:
+    """What nobody stated or the arm's model has not; exact: parameters that count so."""
+    left = []
+    if exact:
+        left.append(f"parameters that the calibration held, which count as exact: {', '.join(exact)}")
+    if encoder_rad is None:
+        left.append("the encoders' noise while measuring: nobody stated it")
+    if seat_mm is None:
+        left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
+    if "link-expansion" not in arm.extras:
+        left.append("links that grow with temperature: the arm's model has none")
+    elif not u_temperature_k:
+        left.append("the uncertainty of the temperature: nobody stated it")
+    if "encoder-harmonics" not in arm.extras:
+        left.append("eccentric encoders: the arm's model has none")
+    if "compliance" not in arm.extras:
+        left.append("joints that give way under load: the arm's model has none")
+    left.append("the form and the temperature of what is measured")
+    left.append("errors of the calibration's artefact beyond the u that its study states")
+    return left
