@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from ulna.arm.file import arm_toml
 from ulna.arm.model import Arm
+from ulna.ground.arrays import Arrays
 from ulna.planning.spec import PlanSpec
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
 
