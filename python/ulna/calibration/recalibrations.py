@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
+from ulna.ground.arrays import Arrays
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
 from ulna.study.study import Study
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
 

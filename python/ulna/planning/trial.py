@@ -11,9 +11,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.ground.arrays import F64, I64, Bool, Progress
+from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
 from ulna.planning.spec import PlanSpec
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
 

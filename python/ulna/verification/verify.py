@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.ground.version import VERSION
 from ulna.verification.bench import Bench
@@ -22,8 +22,6 @@ from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult,
 from ulna.verification.profile_tables import LimitTable, LimitValue
 from ulna.verification.tables import STATES
 from ulna.verification.touches import Touches, joined
-
-Progress = Callable[[str, int, int], None]
 
 FILE = "verification.json"
 TABLE = "values.csv"
