@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.artefacts.surface import GOLDEN
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import ReadingErrors, turns
-from ulna.simulation.touches import GOLDEN
 from ulna.verification.plan_files import Filled
 from ulna.verification.profile import Profile
 from ulna.verification.steps import Step, lengths_of, steps_of

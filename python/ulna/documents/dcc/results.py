@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ulna.calibration.figures import NAMES, Figures
+from ulna.artefacts.quantities import NAMES
+from ulna.calibration.figures import Figures
 from ulna.calibration.result import Parameter, Result
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.quantities import Expanded, Region, quantity, real, real_list
