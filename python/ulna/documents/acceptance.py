@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 from ulna.calibration.result import Result
 from ulna.documents.content import Said, TestedLengths, Verification
 from ulna.formats.toml import read_bytes, sha256
+from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.result_file import TestedTable, VerificationFile, load_verification
 
 F64 = NDArray[np.float64]
-
-LENGTHS = ("length", "volumetric")
-"""Kinds of tests whose first figure is of length errors."""
 
 
 def verification(path: Path, result: Result, result_path: Path, result_sha256: str) -> Verification:

@@ -11,8 +11,9 @@ from ulna.arm.model import Arm
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.verification.certified import ARTEFACTS
 from ulna.verification.profile import Profile, load_profile
-from ulna.verification.tables import ARTEFACT_KINDS, VerifyFile
+from ulna.verification.tables import VerifyFile
 from ulna.verification.touches import Setting, Touches, read_touches
 
 WHAT = 'a verify file (TOML, format = "ulna-verify/1")'
@@ -83,7 +84,7 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
 def _check_kinds(document: dict[str, Any], path: Path) -> None:
     artefacts = document.get("artefact")
     for name, table in artefacts.items() if isinstance(artefacts, dict) else ():
-        check_kind(table, f"artefact.{name}", ARTEFACT_KINDS, path)
+        check_kind(table, f"artefact.{name}", list(ARTEFACTS), path)
 
 
 def _check_labels(touches: Touches, file: VerifyFile, profile: Profile, path: Path) -> None:

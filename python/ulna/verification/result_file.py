@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 
 from ulna.formats.models import fill
 from ulna.formats.toml import check_format, read_json
-from ulna.verification.profile_tables import Rule
+from ulna.verification.limits import Rule
 
 WHAT = 'a verification.json (format = "ulna-verification/1")'
 

@@ -17,9 +17,9 @@ from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
-from ulna.verification.kinds.registry import evaluate, figures_of
+from ulna.verification.kinds.registry import kind_of
+from ulna.verification.limits import LimitTable, LimitValue
 from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult, TestResult
-from ulna.verification.profile_tables import LimitTable, LimitValue
 from ulna.verification.tables import STATES
 from ulna.verification.touches import Touches, joined
 
@@ -72,10 +72,7 @@ class Verification:
                 "fixture": None if fixture is None else {"u": fixture.u * mm},
                 "range": None if plan.file.range is None else plan.file.range * mm,
             },
-            "artefacts": [
-                {"name": name, **_in_mm(table.model_dump(exclude_none=True), mm)}
-                for name, table in plan.file.artefact.items()
-            ],
+            "artefacts": [{"name": name, **table.in_mm(mm)} for name, table in plan.file.artefact.items()],
             "states": [state.as_dict() for state in self.states],
             "provenance": {
                 "program": "ulna",
@@ -125,9 +122,7 @@ def has_lengths(states: list[StateResult]) -> bool:
 
 def lengths_of(state: StateResult) -> list[Judged]:
     """All lengths of a state."""
-    return [
-        judged for test in state.tests if test.kind in ("length", "volumetric") for judged in test.figures[0].values
-    ]
+    return [judged for test in state.tests if kind_of(test.kind).length_errors for judged in test.figures[0].values]
 
 
 def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress | None = None) -> Verification:
@@ -156,11 +151,12 @@ def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, l
     parts = {name: own for (name,), own in touches.groups(("test",))}
     tests, departures = [], []
     for name, table in plan.profile.file.test.items():
+        kind = kind_of(table.kind)
         if name not in parts:
-            figures = ", ".join(figure.key for figure in figures_of(table))
+            figures = ", ".join(figure.key for figure in kind.figures(table))
             departures.append(f"test '{name}' ({figures}) was not measured.")
             continue
-        found = evaluate(name, table, parts[name], bench)
+        found = kind.evaluated(name, table, parts[name], bench)
         judged = []
         for definition, singles in found.figures:
             limit = limits.get(definition.key)
@@ -169,7 +165,7 @@ def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, l
                 limit_mm = None if limit is None else limit.at_mm(single.calibrated_mm)
                 values.append(Judged(single, limit_mm, rule.decide(single.value_mm, limit_mm, single.budget.u_mm)))
             judged.append(FigureResult(definition, limit, values, rule.k, rule.p))
-        tests.append(TestResult(name, table.kind, len(parts[name].row), judged, found.departures))
+        tests.append(TestResult(name, kind.name, len(parts[name].row), judged, found.departures))
     return StateResult(state, tests, departures)
 
 
@@ -187,7 +183,7 @@ def _bench(plan: VerifyPlan) -> Bench:
 def _limits(plan: VerifyPlan) -> dict[str, Limit]:
     """By the short name of a figure. Raises UlnaInputError for names that no test gives."""
     profile = plan.profile.file
-    known = [figure.key for table in profile.test.values() for figure in figures_of(table)]
+    known = [figure.key for table in profile.test.values() for figure in kind_of(table.kind).figures(table)]
     found: dict[str, Limit] = {}
     unit = 1.0 if profile.unit is None else MM_PER[profile.unit]
     for limits, mm, path, key in (
@@ -206,8 +202,3 @@ def _limits(plan: VerifyPlan) -> dict[str, Limit]:
 
 def _limit(value: LimitValue, mm: float) -> Limit:
     return Limit(value.a * mm, value.b) if isinstance(value, LimitTable) else Limit(value * mm)
-
-
-def _in_mm(table: dict[str, Any], mm: float) -> dict[str, Any]:
-    lengths = ("diameter", "length", "u", "form")
-    return {key: value * mm if key in lengths else value for key, value in table.items()}

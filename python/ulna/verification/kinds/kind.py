@@ -1,0 +1,88 @@
+"""What an acceptance test owes: its table in a profile, figures, artefacts and steps, and how touches are evaluated.
+
+A new test is one file beside this one, which makes a `TestKind`, and its row in `registry.py`; nobody else asks of what
+kind a test is. `tests/contract/test_acceptance_tests.py` holds every row to what is written here.
+"""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from ulna.formats.models import Strict
+from ulna.verification.bench import Bench, Found
+from ulna.verification.figures.figure import Definition
+from ulna.verification.kinds.steps import Step
+from ulna.verification.kinds.wanted import Wanted
+from ulna.verification.touches import Touches
+
+
+class TestTable(Strict):
+    """What a profile says of one test."""
+
+    __test__ = False  # no test of pytest's
+
+    kind: str
+    """Each kind has a table of its own, where this is a `Literal` of its name."""
+
+
+Table = TypeVar("Table", bound=TestTable)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TestKind(Generic[Table]):
+    """One kind of acceptance test. Nothing here has a default: what a kind has nothing of, it says."""
+
+    __test__ = False
+
+    table: type[Table]
+    """Its table in a profile; keys have docstrings, which become the JSON Schema's."""
+    figures: Callable[[Table], list[Definition]]
+    """What it gives, in the order of reports."""
+    artefacts: Callable[[Table], Sequence[Wanted]]
+    """What is touched; a virtual arm touches it in the same way."""
+    steps: Callable[[str, Table], Iterable[Step]]
+    """(the test's name, table) → what the operator does, touch by touch."""
+    evaluate: Callable[[str, Table, Touches, Bench], Found]
+    """(the test's name, table, touches, what they stand on) → figures with their single values, and departures from the
+    profile. Raises UlnaInputError where touches determine no figure."""
+    limits: Mapping[str, float | Mapping[str, float]]
+    """Examples of limits by the short name of a figure, mm, of no maker: they stand in plans, and in those that a
+    virtual arm plays. {a, b} of one that grows with the length."""
+    length_errors: bool
+    """Whether its first figure is of errors of lengths, which are drawn over the length."""
+    words: tuple[str, ...]
+    """Keys of the reports' words that only its part of a report needs."""
+
+    @property
+    def name(self) -> str:
+        """What a profile calls it: the one text that its table's key `kind` may be."""
+        return str(typing.get_args(self.table.model_fields["kind"].annotation)[0])
+
+    def __post_init__(self) -> None:
+        """Raises TypeError with all that a kind falls short of."""
+        missing = list(self._missing())
+        if missing:
+            raise TypeError(f"acceptance test {self.table.__name__}: {'; '.join(missing)}")
+
+    def _missing(self) -> Iterable[str]:
+        if typing.get_origin(self.table.model_fields["kind"].annotation) is not typing.Literal:
+            yield "its table has no name: write kind: Literal[…], the word for it in a profile"
+        if not (self.table.__doc__ or "").strip():
+            yield "its table has no docstring: say which figures it gives, and of what"
+        if self.length_errors and not self.words:
+            yield "it draws errors over lengths, but names no words for that: name their keys"
+
+    def evaluated(self, name: str, table: Any, touches: Touches, bench: Bench) -> Found:
+        """As `evaluate`; a figure that the kind does not own to is nobody's. Raises TypeError for one."""
+        found = self.evaluate(name, table, touches, bench)
+        known = self.figures(table)
+        for definition, _ in found.figures:
+            if definition not in known:
+                raise TypeError(
+                    f"acceptance test '{self.name}': it gives '{definition.key}', which is not among its figures: name "
+                    "it there, so that limits for it are known"
+                )
+        return found
