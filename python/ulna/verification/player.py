@@ -22,6 +22,7 @@ from ulna.verification.profile import Profile
 from ulna.verification.steps import artefacts_of, steps_of
 
 FIXTURE_MM = 0.001
+TEMPERATURE_C = 20.0
 #: of the sum of the links: what an arm's maker would call its reach
 REACHED = 0.8
 #: places tried at once, and how often
@@ -81,7 +82,7 @@ def play(
         range_mm=range_mm,
         artefacts=stated,
         mpe={key: limit for table in profile.file.test.values() for key, limit in kind_of(table.kind).limits.items()},
-        temperature={"value": 20.0, "u": 0.1},
+        temperature={"value": TEMPERATURE_C, "u": 0.1},
         fixture_mm=FIXTURE_MM,
     )
     return Played(filled, errors.read(np.concatenate(parts), rng), true_mm)
@@ -94,11 +95,9 @@ def _stated(
     stated: dict[str, dict[str, Any]] = {}
     true_mm: dict[str, float] = {}
     for each in wanted:
-        table = each.stated(range_mm)
-        true_mm[each.name] = each.size_mm(table)
-        if table:
-            stated[each.name] = table
-            true_mm[each.name] += table["u"] * float(rng.standard_normal())
+        if each.SIZE is not None:
+            table = stated[each.name] = each.stated(range_mm)
+            true_mm[each.name] = table[each.SIZE] + table["u"] * float(rng.standard_normal())
     return stated, true_mm
 
 
@@ -116,10 +115,10 @@ class _Player:
         """(N, n) true postures at the steps of one artefact in one place."""
         first = steps[0]
         artefact = self.wanted[first.artefact]
-        local_mm = artefact.touched(steps, self.true_mm[artefact.name], self.tip_mm)
+        local_mm = artefact.touched(steps, self.true_mm.get(artefact.name, 0.0), self.tip_mm)
         between = artefact.between(first.position)
         probe = np.zeros(len(steps) * PLACES, dtype=np.int64)
-        warmth_k = np.zeros(len(probe)) if "link-expansion" in self.mover.arm.extras else None
+        warmth_k = self.mover.arm.warmth_k(TEMPERATURE_C, len(probe))
         for _ in range(ROUNDS):
             axes = turns(np.eye(3), PLACES, self.rng)
             origin_mm = self._origins(between, local_mm, axes)
@@ -148,5 +147,5 @@ class _Player:
         return np.asarray(tips[np.argsort(np.maximum(away, 0.0), kind="stable")[:PLACES]])
 
     def _tips(self, q_rad: F64) -> F64:
-        warmth_k = np.zeros(len(q_rad)) if "link-expansion" in self.mover.arm.extras else None
+        warmth_k = self.mover.arm.warmth_k(TEMPERATURE_C, len(q_rad))
         return np.asarray(self.mover.arm.core.tip(q_rad, 0, warmth_k))

@@ -10,7 +10,7 @@ from ulna.verification.profile_tables import ProfileFile
 
 def steps_of(profile: ProfileFile) -> list[Step]:
     """Every touch, in order."""
-    return [step for name, table in profile.test.items() for step in kind_of(table.kind).steps(name, table)]
+    return [step for name, table in profile.test.items() for step in kind_of(table.kind).listed(name, table)]
 
 
 def artefacts_of(profile: ProfileFile) -> list[Wanted]:

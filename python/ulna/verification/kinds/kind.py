@@ -55,6 +55,8 @@ class TestKind(Generic[Table]):
     """Whether its first figure is of errors of lengths, which are drawn over the length."""
     words: tuple[str, ...]
     """Keys of the reports' words that only its part of a report needs."""
+    examples: tuple[Table, ...]
+    """Small tables, one of each variant: what the contract suite plays."""
 
     @property
     def name(self) -> str:
@@ -74,6 +76,28 @@ class TestKind(Generic[Table]):
             yield "its table has no docstring: say which figures it gives, and of what"
         if self.length_errors and not self.words:
             yield "it draws errors over lengths, but names no words for that: name their keys"
+        if not self.examples:
+            yield "it has no examples: give a small table of each variant, which the contract suite plays"
+        known = {figure.key for table in self.examples for figure in self.figures(table)}
+        for table in self.examples:
+            if not self.figures(table):
+                yield "it has no figures: name what it gives, with a formula and a source"
+        for key in self.limits.keys() - known:
+            yield f"it has an example of a limit for '{key}', which no example gives: name that figure, or remove it"
+
+    def listed(self, name: str, table: Any) -> list[Step]:
+        """All its steps. Raises TypeError where there are none, or where one touches what the kind does not want."""
+        steps = list(self.steps(name, table))
+        wanted = {each.name for each in self.artefacts(table)}
+        if not steps:
+            raise TypeError(f"acceptance test '{self.name}': it has no steps: say what the operator touches")
+        for step in steps:
+            if step.artefact not in wanted:
+                raise TypeError(
+                    f"acceptance test '{self.name}': a step touches '{step.artefact}', which is not among its "
+                    "artefacts: name it there, so that plans list it"
+                )
+        return steps
 
     def evaluated(self, name: str, table: Any, touches: Touches, bench: Bench) -> Found:
         """As `evaluate`; a figure that the kind does not own to is nobody's. Raises TypeError for one."""

@@ -39,6 +39,8 @@ class Wanted(ABC):
 
     RANK: ClassVar[int]
     """Plans list artefacts by it, then in the order of the tests."""
+    SIZE: ClassVar[str | None]
+    """The key of its length or diameter in its table; None where it has none."""
 
     name: str
 
@@ -51,13 +53,9 @@ class Wanted(ABC):
         """Its table as an example's certificate has it, for an arm of this measuring range; {} where there is none."""
 
     @abstractmethod
-    def size_mm(self, stated: Mapping[str, Any]) -> float:
-        """Its length or diameter out of that table."""
-
-    @abstractmethod
     def touched(self, steps: Sequence[Step], true_mm: float, tip_mm: float) -> F64:
         """(N, 3) centres of the probe's ball in its own frame at the steps in one of its places, `true_mm` its true
-        size, `tip_mm` the diameter of the probe's ball."""
+        size (0 where it has none), `tip_mm` the diameter of the probe's ball."""
 
     def between(self, position: str) -> tuple[float, float] | None:
         """Shares of the reach between which it stands in a place; None where it may stand anywhere."""
@@ -69,6 +67,7 @@ class WantedBall(Wanted):
     """A calibrated ball, each measurement of it spread over the half that is away from its stem."""
 
     RANK: ClassVar[int] = 0
+    SIZE: ClassVar[str | None] = "diameter"
 
     name: str = "ball"
 
@@ -84,9 +83,6 @@ class WantedBall(Wanted):
 
     def stated(self, range_mm: float) -> dict[str, Any]:
         return {"diameter": BALL_MM, "u": 0.0003, "form": 0.0005, "expansion": 5.5e-6, "u_expansion": 0.5e-6}
-
-    def size_mm(self, stated: Mapping[str, Any]) -> float:
-        return float(stated["diameter"])
 
     def touched(self, steps: Sequence[Step], true_mm: float, tip_mm: float) -> F64:
         parts = []
@@ -104,6 +100,7 @@ class WantedLength(Wanted):
     """A calibrated length between ends A and B: two seats, or the faces of a gauge touched from outside."""
 
     RANK: ClassVar[int] = 1
+    SIZE: ClassVar[str | None] = "length"
 
     share: float
     """Of the measuring range."""
@@ -129,9 +126,6 @@ class WantedLength(Wanted):
     def stated(self, range_mm: float) -> dict[str, Any]:
         nominal = float(np.ceil(self.share * range_mm))
         return {"length": nominal, "u": 0.001, "expansion": 11.5e-6, "u_expansion": 0.5e-6}
-
-    def size_mm(self, stated: Mapping[str, Any]) -> float:
-        return float(stated["length"])
 
     def steps(self, test: str, position: str, repeat: str = "") -> list[Step]:
         """Both ends in one place, A first."""
@@ -165,6 +159,7 @@ class WantedSeat(Wanted):
     """A cone or socket of unknown place: no certificate is about it."""
 
     RANK: ClassVar[int] = 2
+    SIZE: ClassVar[str | None] = None
 
     name: str = ""
     places: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -175,9 +170,6 @@ class WantedSeat(Wanted):
 
     def stated(self, range_mm: float) -> dict[str, Any]:
         return {}
-
-    def size_mm(self, stated: Mapping[str, Any]) -> float:
-        return 0.0
 
     def touched(self, steps: Sequence[Step], true_mm: float, tip_mm: float) -> F64:
         return np.zeros((len(steps), 3))
