@@ -10,7 +10,7 @@ from typing import Any
 
 import polars as pl
 
-from ulna.arm.file import toml_key, toml_value
+from ulna.formats.toml_text import toml_key, toml_value
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.kinds.steps import Step
 from ulna.verification.profile import Profile, shipped

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover

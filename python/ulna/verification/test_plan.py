@@ -8,7 +8,7 @@ from typing import Any
 
 import polars as pl
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.verification.plan_files import EMPTY, PLAN, TOUCHES, Filled, plan_toml, touches_table

@@ -9,24 +9,16 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.units import Units
+from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import F64, I64, Texts
 from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.checks import check_scale, remark_limits
-from ulna.study.readings.columns import (
-    ReadingsEntry,
-    Source,
-    check_columns,
-    codes,
-    each_row,
-    is_numeric,
-    known_columns,
-    remark_strange,
-)
+from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.verification.tables import VerifyReadings
 

@@ -8,11 +8,11 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import ulna
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.version import VERSION
 from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
@@ -76,7 +76,7 @@ class Verification:
             "states": [state.as_dict() for state in self.states],
             "provenance": {
                 "program": "ulna",
-                "version": ulna.__version__,
+                "version": VERSION,
                 "plan": {"path": str(plan.path), "sha256": plan.sha256},
                 "arms": [{"path": str(each.path), "sha256": each.sha256} for each in plan.arms],
                 "files": [
