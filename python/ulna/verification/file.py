@@ -10,6 +10,8 @@ from ulna.arm.arm import Arm
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.verification.bench import Bench
+from ulna.verification.budget import Surroundings
 from ulna.verification.certified import ARTEFACTS
 from ulna.verification.profile import Profile, load_profile
 from ulna.verification.tables import VerifyFile
@@ -46,6 +48,18 @@ class VerifyPlan:
     touches: dict[str, list[Touches]]
     """State → files."""
     warnings: list[str]
+
+    @property
+    def bench(self) -> Bench:
+        """What the tests stand on, mm."""
+        mm, temperature, fixture = self.file.units.mm, self.file.temperature, self.file.fixture
+        surroundings = Surroundings(
+            None if temperature is None else temperature.value,
+            None if temperature is None else temperature.u,
+            None if fixture is None else fixture.u * mm,
+        )
+        range_mm = None if self.file.range is None else self.file.range * mm
+        return Bench(self.path, self.file.artefact, mm, surroundings, range_mm)
 
 
 def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:

@@ -13,8 +13,6 @@ from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.ground.version import VERSION
-from ulna.verification.bench import Bench
-from ulna.verification.budget import Surroundings
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
@@ -147,7 +145,7 @@ def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress |
 
 
 def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]) -> StateResult:
-    bench = _bench(plan)
+    bench = plan.bench
     parts = {name: own for (name,), own in touches.groups(("test",))}
     tests, departures = [], []
     for name, table in plan.profile.file.test.items():
@@ -167,17 +165,6 @@ def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, l
             judged.append(FigureResult(definition, limit, values, rule.k, rule.p))
         tests.append(TestResult(name, kind.name, len(parts[name].row), judged, found.departures))
     return StateResult(state, tests, departures)
-
-
-def _bench(plan: VerifyPlan) -> Bench:
-    file, mm = plan.file, plan.file.units.mm
-    temperature = file.temperature
-    surroundings = Surroundings(
-        None if temperature is None else temperature.value,
-        None if temperature is None else temperature.u,
-        None if file.fixture is None else file.fixture.u * mm,
-    )
-    return Bench(plan.path, file.artefact, mm, surroundings, None if file.range is None else file.range * mm)
 
 
 def _limits(plan: VerifyPlan) -> dict[str, Limit]:
