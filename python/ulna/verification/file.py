@@ -14,7 +14,7 @@ from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
 from ulna.verification.certified import ARTEFACTS
 from ulna.verification.profile import Profile, load_profile
-from ulna.verification.tables import VerifyFile
+from ulna.verification.tables import State, VerifyFile
 from ulna.verification.touches import Setting, Touches, read_touches
 
 WHAT = 'a verify file (TOML, format = "ulna-verify/1")'
@@ -45,7 +45,7 @@ class VerifyPlan:
     profile: Profile
     arms: list[StatedArm]
     """Those that turned encoder readings into points; that of the command first."""
-    touches: dict[str, list[Touches]]
+    touches: dict[State, list[Touches]]
     """State → files."""
     warnings: list[str]
 
@@ -75,7 +75,7 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
     remarks: list[str] = []
     temperature_c = None if file.temperature is None else file.temperature.value
     setting = Setting(path, file.units, None if file.ball is None else file.ball * file.units.mm, temperature_c)
-    found: dict[str, list[Touches]] = {}
+    found: dict[State, list[Touches]] = {}
     used = set()
     for number, entry in enumerate(file.readings, start=1):
         own = arm_path if entry.arm is None else path.parent / entry.arm

@@ -12,13 +12,14 @@ from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
-from ulna.ground.version import VERSION
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.limits import LimitTable, LimitValue
-from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult, TestResult
-from ulna.verification.tables import STATES
+from ulna.verification.outcome import FigureResult, Judged, StateResult, TestResult
+from ulna.verification.outcome_tables import verification_file
+from ulna.verification.result_file import VerificationFile
+from ulna.verification.tables import STATES, State
 from ulna.verification.touches import Touches, joined
 
 FILE = "verification.json"
@@ -49,50 +50,13 @@ class Verification:
             return named
         return self.plan.arms[0].arm.name if self.plan.arms else "not named"
 
+    def file(self) -> VerificationFile:
+        """`verification.json`, lengths in mm."""
+        return verification_file(self.plan, self.arm, self.rule, self.states, self.verdict, self.time)
+
     def as_dict(self) -> dict[str, Any]:
-        """`verification.json`: JSON types only, lengths in mm."""
-        plan, profile = self.plan, self.plan.profile
-        temperature, fixture, mm = plan.file.temperature, plan.file.fixture, plan.file.units.mm
-        return {
-            "format": FORMAT,
-            "arm": self.arm,
-            "verdict": self.verdict,
-            "profile": {
-                "name": profile.file.name,
-                "standard": profile.file.standard,
-                "statement": profile.file.statement,
-                "path": str(profile.path),
-                "sha256": profile.sha256,
-            },
-            "decision": {"rule": self.rule.rule, "text": self.rule.text, "k": self.rule.k, "p": self.rule.p},
-            "environment": {
-                "temperature": None if temperature is None else {"value": temperature.value, "u": temperature.u},
-                "fixture": None if fixture is None else {"u": fixture.u * mm},
-                "range": None if plan.file.range is None else plan.file.range * mm,
-            },
-            "artefacts": [{"name": name, **table.in_mm(mm)} for name, table in plan.file.artefact.items()],
-            "states": [state.as_dict() for state in self.states],
-            "provenance": {
-                "program": "ulna",
-                "version": VERSION,
-                "plan": {"path": str(plan.path), "sha256": plan.sha256},
-                "arms": [{"path": str(each.path), "sha256": each.sha256} for each in plan.arms],
-                "files": [
-                    {
-                        "state": state,
-                        "path": str(each.path),
-                        "sha256": each.sha256,
-                        "rows": len(each.row),
-                        "points": each.source,
-                        "arm_sha256": each.arm_sha256,
-                    }
-                    for state, parts in plan.touches.items()
-                    for each in parts
-                ],
-                "warnings": list(plan.warnings),
-                "time": self.time.isoformat(timespec="seconds"),
-            },
-        }
+        """The same: JSON types only."""
+        return self.file().model_dump(exclude_unset=True)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write verification.json, values.csv and, where lengths were measured, lengths.svg and .png. Raises
@@ -144,7 +108,9 @@ def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress |
     return Verification(stated, rule, found, datetime.now().astimezone())
 
 
-def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]) -> StateResult:
+def _state(
+    state: State, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]
+) -> StateResult:
     bench = plan.bench
     parts = {name: own for (name,), own in touches.groups(("test",))}
     tests, departures = [], []
