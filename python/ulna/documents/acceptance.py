@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 from ulna.calibration.result import Result
 from ulna.documents.content import Said, TestedLengths, Verification
 from ulna.formats.toml import read_bytes, sha256
+from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.result_file import TestedTable, VerificationFile, load_verification
 
 F64 = NDArray[np.float64]
-
-LENGTHS = ("length", "volumetric")
-"""Kinds of tests whose first figure is of length errors."""
 
 
 def verification(path: Path, result: Result, result_path: Path, result_sha256: str) -> Verification:
@@ -28,15 +26,15 @@ def verification(path: Path, result: Result, result_path: Path, result_sha256: s
     """
     file, digest = load_verification(path)
     remarks = []
-    arms = [each for each in file.provenance.get("arms", []) if isinstance(each, dict)]
+    arms = file.provenance.arms
     if arms:
         beside = result_path.parent / "arm.toml"
         ours = {result_sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
         before = {str(each["sha256"]) for each in result.provenance.get("files", [])}
         known = ours | (before if any(state.state == "as-found" for state in file.states) else set())
         for each in arms:
-            if each.get("sha256") not in known:
-                remarks.append(Said("verification.other-arm", {"file": path.name, "arm": str(each.get("path"))}))
+            if each.sha256 not in known:
+                remarks.append(Said("verification.other-arm", {"file": path.name, "arm": each.path}))
     elif file.arm != result.arm.name:
         remarks.append(Said("verification.by-name", {"file": path.name, "arm": file.arm}))
     lengths = [

@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Annotated, NoReturn
-
-from pydantic import Field
+from typing import NoReturn
 
 from ulna.calibration.result import Result
-from ulna.calibration.result_file import Open
 from ulna.documents.certified.source import MOST
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.documents.laboratory.tables import ItemTable
-from ulna.formats.models import fill
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.result_file import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
@@ -23,57 +19,19 @@ from ulna.verification.result_file import FigureTable, StateTable, ValueTable, V
 _SLACK = 1e-9
 
 
-class _ArtefactTemperature(Open):
-    """Of the artefacts, °C and K."""
-
-    value: float
-    u: Annotated[float, Field(ge=0)]
-
-
-class _Environment(Open):
-    """What holds for all tests of a file."""
-
-    temperature: _ArtefactTemperature | None = None
-
-
-class _Source(Open):
-    """A file that figures come from."""
-
-    path: str
-    sha256: str
-
-
-class _Readings(_Source):
-    """A file of touches."""
-
-    state: str
-    points: str
-    """"encoders" or "xyz"."""
-
-
-class _Made(Open):
-    """From what and with what the figures were made."""
-
-    version: str
-    plan: _Source
-    arms: list[_Source]
-    files: list[_Readings]
-
-
 def stated_tests(
     path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
 ) -> list[StatedTests]:
     """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
     file, digest = load_verification(path)
-    made = fill(_Made, file.provenance, path)
-    _check_arm(file, made, path, result, result_path, result_sha256, item)
-    return [_state(file, made, state, path, digest) for state in file.states]
+    _check_arm(file, path, result, result_path, result_sha256, item)
+    return [_state(file, state, path, digest) for state in file.states]
 
 
-def _state(file: VerificationFile, made: _Made, state: StateTable, path: Path, digest: str) -> StatedTests:
+def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
     if not any(test.figures for test in state.tests):
         raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
-    stated = fill(_Environment, file.environment, path).temperature
+    made, stated = file.provenance, file.environment.temperature
     own = [each for each in made.files if each.state == state.state]
     files = [(path.name, digest), *((each.path, each.sha256) for each in (made.plan, *made.arms, *own))]
     return StatedTests(
@@ -156,7 +114,6 @@ def _damaged(path: Path, name: str, what: str) -> NoReturn:
 
 def _check_arm(
     file: VerificationFile,
-    made: _Made,
     path: Path,
     result: Result,
     result_path: Path,
@@ -166,6 +123,7 @@ def _check_arm(
     """Tests by encoder readings name the arm files that made points of them: as left it must be this result, or the
     arm.toml beside it; as found it may also be one that this calibration started from. Tests by coordinates name the
     arm: its serial number must be in it. Raises UlnaInputError."""
+    made = file.provenance
     if not made.arms or any(each.points == "xyz" for each in made.files):
         _check_name(file, path, result, item)
     if not made.arms:
