@@ -13,10 +13,8 @@ import inspect
 import json
 import sys
 import textwrap
-from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
@@ -64,7 +62,6 @@ class Described(GenerateJsonSchema):
         return made
 
 
-@cache
 def descriptions(model: type[BaseModel]) -> dict[str, str]:
     """Field → the text below it, of a model and of those that it is made from."""
     found: dict[str, str] = {}
@@ -74,11 +71,9 @@ def descriptions(model: type[BaseModel]) -> dict[str, str]:
         (body,) = ast.parse(textwrap.dedent(inspect.getsource(owner))).body
         assert isinstance(body, ast.ClassDef)
         for line, after in pairwise(body.body):
-            text: Any = (
-                after.value.value if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant) else 0
-            )
-            if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name) and isinstance(text, str):
-                found[line.target.id] = inspect.cleandoc(text)
+            match line, after:
+                case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                    found[name] = inspect.cleandoc(text)
     return {name: text for name, text in found.items() if name in model.model_fields}
 
 
