@@ -13,8 +13,8 @@ from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
 from ulna.study.assembly import assemble
-from ulna.study.data import Study
 from ulna.study.options import with_options
+from ulna.study.study import Study
 
 Progress = Callable[[str, int, int], None]
 

@@ -13,7 +13,8 @@ import numpy as np
 import polars as pl
 
 import ulna._core as _core
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.calibration.estimators import Searched
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import Figures, PlacementFigures, figures
@@ -23,7 +24,7 @@ from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.study.assembly import Assembled
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 
 @dataclass(frozen=True)

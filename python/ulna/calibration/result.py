@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import covariance_of_result
-from ulna.arm.file import arm_document, arm_of_result, arm_toml
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.probes import ProbeView, probe_views
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import Figures, PlacementFigures
@@ -101,7 +102,7 @@ class Result(OnDemand):
         path = path / "result.json" if path.is_dir() else path
         document, _ = read_json(path, "a result.json")
         check_format(document, path, "ulna-result")
-        arm = arm_of_result(document, path)
+        arm = Arm.of_result(document, path)
         try:
             return cls(
                 arm=arm,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import polars as pl
 
+from ulna.artefacts.artefact import Artefact
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.result import Result
 from ulna.documents.acceptance import verification
@@ -33,7 +34,7 @@ from ulna.documents.parameters import observability, parameters
 from ulna.documents.quality import held_out, quality_rows, residual_row
 from ulna.documents.source import find_study
 from ulna.formats.toml import read_bytes, sha256
-from ulna.study.data import Artefact, Study
+from ulna.study.study import Study
 
 Progress = Callable[[str, int, int], None]
 

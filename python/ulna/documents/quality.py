@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.figures import Figures, figures
 from ulna.calibration.result import Result
 from ulna.documents.content import QualityRow, ReadFile, Said, Summary
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Study
 from ulna.study.file import rows_to_judge
+from ulna.study.study import Study
 
 #: quantity → its mean, RMS and largest among the figures; the others have no more than one number
 DISTRIBUTED = {

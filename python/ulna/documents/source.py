@@ -13,7 +13,7 @@ from ulna.calibration.result import Result
 from ulna.documents.content import FileRow, Said
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import InputWarning, UlnaInputError
-from ulna.study.data import Study
+from ulna.study.study import Study
 from ulna.uncertainties.uncertainty import check_same
 
 

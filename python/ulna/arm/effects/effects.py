@@ -16,9 +16,8 @@ from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 Extra = Literal["encoder-harmonics", "link-expansion", "compliance"]
 

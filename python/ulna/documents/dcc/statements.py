@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ulna.arm.directions import combination
 from ulna.calibration.result import Result
-from ulna.cli.printed.identification import combination
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.sheet import Element, Said, Sheet
 from ulna.documents.laboratory.file import Laboratory

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ulna.cli.printed.identification import combination, sentence
+from ulna.arm.directions import combination, sentence
 from ulna.documents.content import Content, ParameterRow, QualityRow
 from ulna.documents.html.markup import number
 from ulna.documents.languages.words import Words
