@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 from ulna.artefacts.quantities import NAMES
 from ulna.calibration.figures import Figures
-from ulna.calibration.result import Parameter, Result
+from ulna.calibration.result import Result
+from ulna.calibration.summary import Parameter
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.quantities import Expanded, Region, quantity, real, real_list
 from ulna.documents.dcc.sheet import Element, Said, Sheet

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
@@ -190,19 +190,15 @@ def _features(
     )
 
 
-def _placements(
-    frame: pl.DataFrame, row: I64, source: Source, header: Header, remarks: list[str]
-) -> NDArray[np.object_]:
+def _placements(frame: pl.DataFrame, row: I64, source: Source, header: Header, remarks: list[str]) -> Labels:
     """(N,) str. With neither column nor key the whole file is one standing; "" says so until files are merged."""
     if "placement" not in frame.columns:
-        return np.full(len(row), source.entry.placement or "", dtype=object)
+        return Labels.all_alike(source.entry.placement or "", len(row))
     remark_unused(frame, header, source, "placement", remarks)
-    # Run by run, and one str object for each label: a million Python strings would outweigh the numbers.
-    runs = frame["placement"].rle().struct
-    seen: dict[str, str] = {}
-    labels = np.array([seen.setdefault(label, label) for label in runs.field("value")], dtype=object)
-    placements: NDArray[np.object_] = np.repeat(labels, runs.field("len").to_numpy())
-    return placements
+    runs = frame["placement"].rle().struct  # readings of one standing mostly follow each other
+    names = runs.field("value").unique(maintain_order=True)
+    code = runs.field("value").replace_strict(names, pl.int_range(len(names), eager=True), return_dtype=pl.Int64)
+    return Labels(np.repeat(code.to_numpy(), runs.field("len").to_numpy()), names.to_list())
 
 
 def _temperatures(frame: pl.DataFrame, joints: int) -> F64 | None:
