@@ -11,12 +11,15 @@ from scipy.spatial.transform import Rotation
 
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.readings import Readings
-from ulna.calibration.figures import MOST_PAIRED_SEATS, figures, over_groups
+from ulna.artefacts.seats import MOST_PAIRED_SEATS
+from ulna.calibration.figures import figures, over_groups
 from ulna.study.study import Study
 
 # An "arm" whose tip is simply its first three readings, in mm: the figures see tips only.
 GANTRY: Any = SimpleNamespace(
-    core=SimpleNamespace(tip=lambda q, probe, warmth_k: q[:, :3].copy()), warmth_k=lambda temperature_c, count: None
+    core=SimpleNamespace(tip=lambda q, probe, warmth_k: q[:, :3].copy()),
+    warmth_k=lambda temperature_c, count: None,
+    probes={"tip": SimpleNamespace(ball_mm=None)},
 )
 
 
