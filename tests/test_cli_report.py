@@ -18,11 +18,13 @@ from ulna.arm.directions import combination
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.arm.probes import probe_views
+from ulna.artefacts.quantities import NAMES
 from ulna.calibration.cross_validate import CrossValidation, GroupFigures
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import NAMES, PlacementFigures
+from ulna.calibration.figures import PlacementFigures
 from ulna.calibration.identify import Identification
-from ulna.calibration.result import FitSummary, Parameter, Result
+from ulna.calibration.result import Result
+from ulna.calibration.summary import FitSummary, Parameter
 from ulna.cli import output
 from ulna.cli.printed.calibration import calibration_report, equations, where_to_look
 from ulna.cli.printed.cross_validation import cross_validation_report

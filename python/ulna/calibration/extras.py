@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from scipy.special import stdtrit
 
 from ulna.arm.effects.effects import PATTERNS
 from ulna.calibration.figures import Figures, figures
@@ -148,6 +147,8 @@ def compared(
     else:
         return None
     without_mm, with_mm = np.array(pairs).mean(axis=0).tolist()
+    from scipy.special import stdtrit  # longer to load than most fits take, and most studies judge no block
+
     gains = np.array([a - b for a, b in pairs])
     better = float(gains.mean())
     u = float(gains.std(ddof=1) / np.sqrt(len(gains))) if len(gains) > 1 else None

@@ -18,7 +18,7 @@ from ulna.arm.tables import CartesianTip
 class Open(BaseModel):
     """A table of a file that Ulna writes: later versions may add keys."""
 
-    model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, defer_build=True)
 
 
 class ResultProbe(Open):

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ulna.arm.probes import ProbeView
 from ulna.calibration.figures import PlacementFigures
 from ulna.calibration.identify import Identification
-from ulna.calibration.result import FitSummary
+from ulna.calibration.summary import FitSummary
 
 if TYPE_CHECKING:
     from ulna.calibration.extras import JudgedExtra

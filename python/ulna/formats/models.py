@@ -21,7 +21,11 @@ class Strict(BaseModel):
     """A table of a hand-written file: no unknown key, no silent conversion, no NaN or infinity."""
 
     model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+        strict=True,
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        defer_build=True,  # a run validates one or two documents, not all that there are
     )
 
 

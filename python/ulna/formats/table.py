@@ -65,14 +65,6 @@ def read_table(
     return header.frame(numeric, header.columns if columns is None else columns, blank)
 
 
-def iter_tables(header: Header, numeric: Numeric, rows: int = 1 << 18) -> Iterator[pl.DataFrame]:
-    """All columns in pieces of about `rows` rows and, of CSV and Parquet, bounded memory, for files of any size."""
-    numbers = [name for name in header.columns if numeric(name)]
-    for piece in header.pieces(numbers, [name for name in header.columns if name not in numbers], rows):
-        columns = {name: piece.numbers[:, k] for k, name in enumerate(numbers)} | piece.texts
-        yield pl.DataFrame({name: columns[name] for name in header.columns})
-
-
 def count_rows(header: Header) -> int:
     """Data rows, 0 where nobody knows without reading them."""
     return header.rows or 0

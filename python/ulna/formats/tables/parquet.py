@@ -9,13 +9,10 @@ from typing import NoReturn
 
 import polars as pl
 import polars.exceptions
-import pyarrow as pa
-import pyarrow.parquet
 
-from ulna.formats.cells import bad_cell, names_of
+from ulna.formats.cells import bad_cell, names_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
-from ulna.formats.tables.arrow import array_piece, no_numbers
 from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
@@ -28,7 +25,7 @@ class ParquetTable(Header):
 
     @property
     def rows(self) -> int:
-        return int(pyarrow.parquet.read_metadata(self.path).num_rows)
+        return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         try:
@@ -49,6 +46,11 @@ class ParquetTable(Header):
         return bad_cell(self, row, column, "" if value is None else str(value), numeric)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
+        import pyarrow.parquet
+
+        from ulna.formats.tables.arrow import array_piece
+
         columns = [*numbers, *texts]
         before = 0
         try:

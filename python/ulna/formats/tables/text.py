@@ -15,13 +15,10 @@ from typing import Any, NoReturn
 
 import polars as pl
 import polars.exceptions
-import pyarrow as pa
-import pyarrow.csv
 
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.tables.arrow import array_piece
 from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
@@ -99,6 +96,10 @@ class TextTable(Header):
     # ------------------------------------------------------------ piece by piece
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
+
+        from ulna.formats.tables.arrow import array_piece
+
         before = 0
         try:
             for batch in self._batches(numbers, texts):
@@ -110,6 +111,9 @@ class TextTable(Header):
             yield from self._forgiving(numbers, texts, before, rows)
 
     def _batches(self, numbers: Sequence[str], texts: Sequence[str]) -> Iterator[Any]:
+        import pyarrow as pa
+        import pyarrow.csv
+
         types = dict.fromkeys(numbers, pa.float64())
         with pyarrow.csv.open_csv(
             self.path,
