@@ -11,7 +11,7 @@ import pytest
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
 from ulna import UlnaInputError
-from ulna.formats.table import iter_tables, read_header, read_table
+from ulna.formats.table import read_header, read_table, stream
 
 CELLS: dict[str, tuple[int, str, str, tuple[str, ...]]] = {
     "no number": (3, "q2", "x", ("row 3 (line 4", "column 'q2'", "got 'x'", "expected a number")),
@@ -232,7 +232,7 @@ def test_pieces_of_a_file_name_the_bad_cell_too(tmp_path: Path) -> None:
     ):
         path.write_text("\n".join(["q1,q2", *rows[:at], cell, *rows[at + 1 :]]) + "\n")
         with pytest.raises(UlnaInputError) as caught:
-            list(iter_tables(read_header(path), lambda _: True, rows=100))
+            list(stream(read_header(path), ["q1", "q2"], [], rows=100))
         says(str(caught.value), f"{path}: ", *fragments)
 
 
@@ -242,9 +242,10 @@ def test_a_parquet_file_with_a_broken_page(tmp_path: Path) -> None:
     content = path.read_bytes()
     path.write_bytes(content[:4] + b"\xff" * 100 + content[104:])
     header = read_header(path)
-    for read in (read_table, lambda *about: list(iter_tables(*about))):
+    reads = (lambda: read_table(header, lambda _: True), lambda: list(stream(header, ["q1"], [])))
+    for read in reads:
         with pytest.raises(UlnaInputError) as caught:
-            read(header, lambda _: True)
+            read()
         says(str(caught.value), f"{path}: ", "expected")
 
 
