@@ -10,7 +10,7 @@ import pytest
 from tests.cli_runs import BENT, STRAIGHT, assert_bad_input, platinum, run, strict_json, write_lengths
 
 import ulna
-from ulna.calibration.figures import NAMES
+from ulna.calibration.placements import NAMES
 
 
 @pytest.fixture(scope="module")

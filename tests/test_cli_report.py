@@ -20,8 +20,8 @@ from ulna.arm.probe import Probe
 from ulna.arm.probes import probe_views
 from ulna.calibration.cross_validate import CrossValidation, GroupFigures
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import NAMES, PlacementFigures
 from ulna.calibration.identify import Identification
+from ulna.calibration.placements import NAMES, PlacementFigures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.cli import output

@@ -19,116 +19,87 @@ Names end in the unit; `_mean_abs_` is the mean of magnitudes, `_mean_` of a len
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import SURFACES
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.surface import Errors, surface_errors
+from ulna.calibration.placements import NAMES, Figures, Placements
+from ulna.ground.arrays import F64, I64
 from ulna.study.assembly import balls_mm, warmth_k
 from ulna.study.study import Study
 
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Figures = dict[str, float]
+QUANTITIES = ("seat_scatter", "length_error", "coordinate_error", "form", "diameter_error")
 
 MOST_PAIRED_SEATS = 500
 """Beyond this many seats in one placement the pairs of free points are too many to mean anything; no length error."""
 
-NAMES = (
-    "seat_scatter_mean_mm",
-    "seat_scatter_rms_mm",
-    "seat_scatter_max_mm",
-    "length_error_mean_mm",
-    "length_error_mean_abs_mm",
-    "length_error_rms_mm",
-    "length_error_max_abs_mm",
-    "coordinate_error_mean_mm",
-    "coordinate_error_rms_mm",
-    "coordinate_error_max_mm",
-    "form_mm",
-    "diameter_error_mm",
-)
-"""Every figure, in the order in which it is shown. A figure that the readings do not give is left out, never 0."""
-
 
 @dataclass(frozen=True)
-class PlacementFigures:
-    """The figures of one artefact in one placement."""
+class _Group:
+    """The errors of one artefact's touches, by quantity, and its placements in the order in which they appear."""
 
-    artefact: str
-    placement: str
-    kind: str
-    readings: int
-    """Number of rows."""
-    figures: Figures
-    """Only those of `NAMES` that these readings give, mm."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json` and `evaluation.json`, list `artefacts`."""
-        return {
-            "artefact": self.artefact,
-            "placement": self.placement,
-            "kind": self.kind,
-            "readings": self.readings,
-            **self.figures,
-        }
-
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> PlacementFigures:
-        """The inverse of `as_dict`."""
-        figures = {name: float(entry[name]) for name in NAMES if name in entry}
-        return cls(entry["artefact"], entry["placement"], entry["kind"], entry["readings"], figures)
+    readings: Readings
+    placements: list[str]
+    code: I64
+    """(N,) number of each row's placement."""
+    errors: dict[str, Errors]
 
 
-def figures(arm: Arm, study: Study) -> tuple[list[PlacementFigures], Figures]:
+def figures(arm: Arm, study: Study) -> tuple[Placements, Figures]:
     """Per artefact and placement, and over all touches and lengths of all of them together.
 
     `arm` must carry the study's probes in the study's order. Errors: those of the core for wrong shapes.
     """
-    entries: list[PlacementFigures] = []
-    pooled: list[dict[str, Errors]] = []
-    for readings in study.readings:
-        # one probe for all is much quicker than one for each row
-        probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
-        warmth = warmth_k(study, arm, readings)
-        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
-        second_mm = None
-        if readings.p_rad is not None:
-            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
-        labels, code = placements(readings)
-        if readings.artefact.kind in SURFACES:
-            errors = surface_errors(readings, code, first_mm, balls_mm(study, arm, readings)[readings.probe])
-        else:
-            errors = errors_of_tips(readings, code, first_mm, second_mm)
-        pooled.append(errors)
-        per_quantity = {name: _by_placement(name, error, len(labels)) for name, error in errors.items()}
-        counts = np.bincount(code, minlength=len(labels))
-        for number, label in enumerate(labels):
-            found = {name: value for quantity in per_quantity.values() for name, value in quantity[number].items()}
-            entries.append(
-                PlacementFigures(readings.artefact.name, label, readings.artefact.kind, int(counts[number]), found)
-            )
-    overall: Figures = {}
-    for quantity in ("seat_scatter", "length_error", "coordinate_error", "form", "diameter_error"):
-        values = [errors[quantity].value_mm for errors in pooled if quantity in errors]
+    groups = [_group(arm, study, readings) for readings in study.readings]
+    return Placements.joined([_by_placement(group) for group in groups]), _over_all(groups)
+
+
+def overall_figures(arm: Arm, study: Study) -> Figures:
+    """The same over all of them together alone."""
+    return _over_all([_group(arm, study, readings) for readings in study.readings])
+
+
+def _group(arm: Arm, study: Study, readings: Readings) -> _Group:
+    # one probe for all is much quicker than one for each row
+    probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
+    warmth = warmth_k(study, arm, readings)
+    first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
+    second_mm = None
+    if readings.p_rad is not None:
+        second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
+    code, labels = readings.labels.as_they_appear()
+    if readings.artefact.kind in SURFACES:
+        errors = surface_errors(readings, code, first_mm, balls_mm(study, arm, readings)[readings.probe])
+    else:
+        errors = errors_of_tips(readings, code, first_mm, second_mm)
+    return _Group(readings, labels, code, errors)
+
+
+def _over_all(groups: Sequence[_Group]) -> Figures:
+    found: Figures = {}
+    for quantity in QUANTITIES:
+        values = [group.errors[quantity].value_mm for group in groups if quantity in group.errors]
         if values:
-            overall.update(_summaries(quantity, np.concatenate(values), np.zeros(1, dtype=np.int64))[0])
-    return entries, overall
+            columns = _summaries(quantity, np.concatenate(values), np.zeros(1, dtype=np.int64))
+            found.update({name: float(column[0]) for name, column in columns.items()})
+    return found
 
 
-def placements(readings: Readings) -> tuple[list[str], I64]:
-    """Labels of the placements in the order in which they appear, and (N,) the number of each row's placement."""
-    code = readings.placement_code
-    count = int(code.max()) + 1 if len(code) else 0
-    first = np.full(count, len(code), dtype=np.int64)
-    np.minimum.at(first, code, np.arange(len(code)))
-    return [str(readings.placement[row]) for row in first], code
+def _by_placement(group: _Group) -> Placements:
+    columns: dict[str, F64] = {}
+    for quantity, errors in group.errors.items():
+        order = np.argsort(errors.code, kind="stable")
+        present, start = np.unique(errors.code[order], return_index=True)
+        for name, values in _summaries(quantity, errors.value_mm[order], start).items():
+            columns[name] = np.full(len(group.placements), np.nan)
+            columns[name][present] = values
+    artefact, counts = group.readings.artefact, np.bincount(group.code, minlength=len(group.placements))
+    return Placements.of_columns(artefact.name, artefact.kind, group.placements, counts, columns)
 
 
 def errors_of_tips(readings: Readings, code: I64, first_mm: F64, second_mm: F64 | None) -> dict[str, Errors]:
@@ -206,18 +177,8 @@ def _placed(reference_mm: F64, tip_mm: F64, code: I64) -> F64:
     return placed
 
 
-def _by_placement(quantity: str, errors: Errors, count: int) -> list[Figures]:
-    """The figures of each placement; {} where it has none."""
-    found: list[Figures] = [{} for _ in range(count)]
-    order = np.argsort(errors.code, kind="stable")
-    present, start = np.unique(errors.code[order], return_index=True)
-    for number, summary in zip(present, _summaries(quantity, errors.value_mm[order], start), strict=True):
-        found[number] = summary
-    return found
-
-
-def _summaries(quantity: str, values_mm: F64, start: I64) -> list[Figures]:
-    """The figures of each run of values; a run begins at each of `start`."""
+def _summaries(quantity: str, values_mm: F64, start: I64) -> dict[str, F64]:
+    """The figures of each run of values, by name; a run begins at each of `start`."""
     counts = np.diff(start, append=len(values_mm))
     size = np.abs(values_mm)
     mean = np.add.reduceat(size, start) / counts
@@ -230,8 +191,7 @@ def _summaries(quantity: str, values_mm: F64, start: I64) -> list[Figures]:
         columns = [np.add.reduceat(values_mm, start) / counts, mean, rms, largest]
     else:
         columns = [mean, rms, largest]
-    names = [name for name in NAMES if name.startswith(quantity)]
-    return [dict(zip(names, row, strict=True)) for row in np.stack(columns, axis=1).tolist()]
+    return dict(zip([name for name in NAMES if name.startswith(quantity)], columns, strict=True))
 
 
 def over_groups(groups: Iterable[Figures]) -> Figures:
@@ -253,11 +213,3 @@ def over_groups(groups: Iterable[Figures]) -> Figures:
         else:
             found[name] = float(values.mean())
     return found
-
-
-def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
-    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
-    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
-    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
-        return [name for name in columns if name not in (mean, largest)]
-    return list(columns)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibration.figures import placements
 from ulna.ground.errors import UlnaInputError
 from ulna.study.study import Study
 
@@ -59,7 +58,7 @@ def _by_placement(study: Study) -> list[Fold]:
     several = len(study.readings) > 1
     found = []
     for k, readings in enumerate(study.readings):
-        labels, code = placements(readings)
+        code, labels = readings.labels.as_they_appear()
         for number, label in enumerate(labels):
             masks = [np.zeros(len(other), dtype=bool) for other in study.readings]
             masks[k] = code == number
@@ -109,7 +108,7 @@ def _standings(study: Study) -> tuple[list[I64], int]:
     total = 0
     for readings in study.readings:
         alone = readings.artefact.kind == "length" or readings.artefact.frame == "arm"
-        code = np.arange(len(readings)) if alone else placements(readings)[1]
+        code = np.arange(len(readings)) if alone else readings.placement_code
         units.append(code + total)
         total += int(code.max()) + 1 if len(code) else 0
     return units, total

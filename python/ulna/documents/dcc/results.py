@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ulna.calibration.figures import NAMES, Figures
+from ulna.calibration.placements import NAMES, Figures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.documents.certified.parameters import StatedParameters

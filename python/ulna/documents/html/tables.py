@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.directions import combination, sentence
-from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
+from ulna.calibration.placements import NAMES, PlacementFigures, without_repeats
 from ulna.documents.content import Content, ParameterRow
 from ulna.documents.html.markup import name, number, paragraph, table, text
 from ulna.documents.languages.words import Words
