@@ -21,8 +21,8 @@ from ulna.arm.probes import probe_views
 from ulna.artefacts.quantities import NAMES
 from ulna.calibration.cross_validate import CrossValidation, GroupFigures
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import PlacementFigures
 from ulna.calibration.identify import Identification
+from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.cli import output

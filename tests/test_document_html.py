@@ -18,7 +18,7 @@ from tests.cli_runs import write_lengths
 from tests.reports import HOSTILE, calibrated, seats_study
 
 import ulna
-from ulna.calibration.figures import PlacementFigures
+from ulna.calibration.placements import PlacementFigures
 from ulna.documents.content import Content, Quiver, ReadingRows, Said
 from ulna.documents.distribution import _sample
 from ulna.documents.gather import gather

@@ -6,6 +6,7 @@ in `Content.missing` that says what would be needed.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.arm.probes import ProbeView
-from ulna.calibration.figures import PlacementFigures
 from ulna.calibration.identify import Identification
+from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.summary import FitSummary
 
 if TYPE_CHECKING:
@@ -336,7 +337,7 @@ class Content:
     identification: Identification
     observability: Observability | None
     lengths: Lengths | None
-    placements: list[PlacementFigures]
+    placements: Sequence[PlacementFigures]
     artefacts: list[ArtefactRow]
     environment: Environment
     outliers: list[dict[str, Any]]

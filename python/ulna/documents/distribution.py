@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from ulna.calibration.figures import PlacementFigures
+from ulna.calibration.placements import PlacementFigures
 from ulna.documents.content import Sample
 
 F64 = NDArray[np.float64]
@@ -15,7 +17,7 @@ F64 = NDArray[np.float64]
 MOST_BINS = 80
 
 
-def samples(residuals: pl.DataFrame, placements: list[PlacementFigures]) -> list[Sample]:
+def samples(residuals: pl.DataFrame, placements: Sequence[PlacementFigures]) -> list[Sample]:
     """One for each artefact and kind of error, in the order of the artefacts.
 
     Two touches of a bar, one at each end, have one error between them, that of its length; their six components would

@@ -11,7 +11,8 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
-from ulna.calibration.figures import Figures, figures
+from ulna.calibration.figures import overall_figures
+from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 from ulna.documents.content import QualityRow, ReadFile, Said, Summary
 from ulna.formats.toml import check_format, read_json
@@ -76,8 +77,8 @@ def held_out(
     said: list[Said] = []
     if study is not None and study.path is not None and study.rows == "fit" and rows_to_judge(study.path) == "check":
         check = Study.load(study.path, "check")
-        after = figures(result.arm, study_of_arm(check, result.arm))[1]
-        before = figures(start_of(result), study_of_arm(check, result.arm))[1]
+        after = overall_figures(result.arm, study_of_arm(check, result.arm))
+        before = overall_figures(start_of(result), study_of_arm(check, result.arm))
         rows += quality_rows("check", before, after)
         said.append(Said("held-out.check", {"readings": sum(len(group) for group in check.readings)}))
     if cross_validation is not None:

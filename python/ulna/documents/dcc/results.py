@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ulna.artefacts.quantities import NAMES
-from ulna.calibration.figures import Figures
+from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.documents.certified.parameters import StatedParameters

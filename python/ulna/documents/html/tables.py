@@ -10,7 +10,7 @@ import numpy as np
 
 from ulna.arm.directions import combination, sentence
 from ulna.artefacts.quantities import NAMES
-from ulna.calibration.figures import PlacementFigures, without_repeats
+from ulna.calibration.placements import PlacementFigures, without_repeats
 from ulna.documents.content import Content, ParameterRow
 from ulna.documents.html.markup import name, number, paragraph, table, text
 from ulna.documents.languages.words import Words
