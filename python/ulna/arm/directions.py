@@ -32,3 +32,25 @@ def worth_naming(combination: Mapping[str, float]) -> dict[str, float]:
     sizes = steps(combination)
     least = NEXT_TO_NOTHING * max(sizes.values())
     return {name: weight for name, weight in combination.items() if sizes[name] >= least}
+
+
+def sentence(text: str) -> str:
+    """With a full stop; the core's reasons are clauses."""
+    return text if text.endswith(".") else f"{text}."
+
+
+def combination(weights: Mapping[str, float]) -> str:
+    """One parameter by its name; several with the steps, in rad and mm, that together change no residual."""
+    if len(weights) == 1:
+        return next(iter(weights))
+    ordered = sorted(worth_naming(weights).items(), key=lambda item: -abs(item[1]))
+    unnamed = len(weights) - len(ordered)
+    return (
+        "together: "
+        + ", ".join(f"{name} {_step(weight)} {unit_of(name)}" for name, weight in ordered)
+        + (f", and {unnamed} more by next to nothing" if unnamed else "")
+    )
+
+
+def _step(weight: float) -> str:
+    return f"{weight:+.3g}".replace("-", "−").replace("e−0", "e−")

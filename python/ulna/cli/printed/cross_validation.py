@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from rich.console import RenderableType
 from rich.text import Text
 
+from ulna.arm.directions import sentence
 from ulna.calibration.cross_validate import CrossValidation
 from ulna.cli.printed.figures import MOST_ROWS, before_after
-from ulna.cli.printed.identification import sentence
 from ulna.cli.printed.tables import heading, listed, table
 from ulna.ground.digits import figure_mm
 

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from ulna.calibration.figures import NAMES, PlacementFigures
 from ulna.cli.printed.tables import table
+from ulna.documents.sections.placements import without_repeats
 from ulna.ground.digits import figure_mm
 
 MOST_ROWS = 24
@@ -67,14 +68,6 @@ def per_placement(entries: Sequence[PlacementFigures], everything: str) -> list[
     if len(entries) > MOST_ROWS:
         parts.append(Text(f"… and {len(entries) - MOST_ROWS} more placements: {everything}"))
     return parts
-
-
-def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
-    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
-    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
-    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
-        return [name for name in columns if name not in (mean, largest)]
-    return list(columns)
 
 
 def _cell(figures: Mapping[str, float], name: str) -> str:

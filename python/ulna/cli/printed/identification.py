@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from ulna.arm.directions import unit_of, worth_naming
+from ulna.arm.directions import combination, sentence
 from ulna.arm.model import Arm
 from ulna.calibration.identify import Identification
 from ulna.cli.printed.tables import heading, listed
@@ -76,25 +76,3 @@ def _weak(direction: Mapping[str, Any]) -> Sequence[str]:
         f"Why: {sentence(direction['because'])}",
         f"Remedy: {sentence(direction['remedy'])}",
     )
-
-
-def sentence(text: str) -> str:
-    """With a full stop; the core's reasons are clauses."""
-    return text if text.endswith(".") else f"{text}."
-
-
-def combination(weights: Mapping[str, float]) -> str:
-    """One parameter by its name; several with the steps, in rad and mm, that together change no residual."""
-    if len(weights) == 1:
-        return next(iter(weights))
-    ordered = sorted(worth_naming(weights).items(), key=lambda item: -abs(item[1]))
-    unnamed = len(weights) - len(ordered)
-    return (
-        "together: "
-        + ", ".join(f"{name} {_step(weight)} {unit_of(name)}" for name, weight in ordered)
-        + (f", and {unnamed} more by next to nothing" if unnamed else "")
-    )
-
-
-def _step(weight: float) -> str:
-    return f"{weight:+.3g}".replace("-", "−").replace("e−0", "e−")

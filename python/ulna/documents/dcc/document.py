@@ -120,7 +120,7 @@ def _calibration(
     result_sha256: str,
 ) -> None:
     calibration = sheet.dcc(measured, "measurementResult")
-    sheet.text(calibration, "name", sheet.own("calibration"))
+    sheet.text(calibration, "name", sheet.own("dcc.calibration"))
     methods = sheet.dcc(calibration, "usedMethods")
     calibration_method(sheet, methods, found)
     laboratory_methods(of_laboratory, methods, known.file.method)
