@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 
 import ulna
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.calibration.recalibrations import recalibrations
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
 from ulna.simulation.reading_errors import VirtualArm
-from ulna.study.data import Study
+from ulna.study.study import Study
 from ulna.uncertainties.assess import Assessment, assess
 from ulna.uncertainties.measurands import Touched
 from ulna.uncertainties.regions import contains

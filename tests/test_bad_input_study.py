@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from tests.small_study import SmallStudy, says
 
-from ulna import Study, UlnaInputError
-from ulna.calibration import calibrate
+from ulna import Study, UlnaInputError, calibrate
 
 CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no format": ('format = "ulna-study/1"\n', "", ("key 'format' is missing",)),

@@ -12,7 +12,11 @@ import polars as pl
 import pytest
 from rich.console import Console
 
-from ulna.arm.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.directions import combination
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.arm.probes import probe_views
 from ulna.calibration.cross_validate import CrossValidation, GroupFigures
 from ulna.calibration.extras import JudgedExtra
@@ -23,7 +27,7 @@ from ulna.cli import output
 from ulna.cli.printed.calibration import calibration_report, equations, where_to_look
 from ulna.cli.printed.cross_validation import cross_validation_report
 from ulna.cli.printed.figures import per_placement
-from ulna.cli.printed.identification import combination, determined_in_words
+from ulna.cli.printed.identification import determined_in_words
 from ulna.ground.digits import decimals, figure_mm, fixed, quantity, uncertainty
 
 

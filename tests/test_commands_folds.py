@@ -8,9 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
 from ulna.calibration.folds import Fold, folds
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Artefact, FitOptions, Readings, Study
+from ulna.study.data import FitOptions
+from ulna.study.study import Study
 
 ARM: Any = SimpleNamespace()
 BAR = Artefact("bar", "bar", {"A": (0.0, 0.0, 0.0), "B": (100.0, 0.0, 0.0)}, length_mm=100.0)

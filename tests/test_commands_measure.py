@@ -12,7 +12,10 @@ import polars as pl
 import pytest
 
 import ulna
-from ulna.arm.model import Arm, Joint, ParameterCovariance, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.measuring.measure import measure_to_stream
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.foreign_tables import WRITERS, cells, dialect, hdf5, mat, sheet
 from tests.small_study import BARS, STUDY, SmallStudy
 
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 TABLE = pl.read_csv(BARS.encode())
 Q = TABLE.select("q1", "q2", "q3").to_numpy()

@@ -10,7 +10,7 @@ from tests.oracle.effects import affected
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_2
 
-from ulna import _core
+import ulna._core as _core
 
 
 def lengths(arm, rng, count=300, travel=np.pi, warmth=None):

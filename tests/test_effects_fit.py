@@ -8,7 +8,7 @@ from tests.oracle.effects import affected
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_2, table_4
 
-from ulna import _core
+import ulna._core as _core
 
 STATED = fits.Noise(np.full(7, 5e-6), 0.008)
 NORMAL_95 = 1.959963984540054

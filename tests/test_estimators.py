@@ -13,10 +13,15 @@ from tests.oracle.published import table_4
 from tests.small_study import SmallStudy, says
 
 import ulna
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
 from ulna.calibration.estimators import search_box
 from ulna.study.assembly import assemble
-from ulna.study.data import Artefact, FitOptions, Noise, Readings, Study
+from ulna.study.data import FitOptions, Noise
+from ulna.study.study import Study
 
 METHODS = ["annealing", "evolution"]
 

@@ -134,7 +134,7 @@ def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_sign_that_is_not_known_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     unknown = _arm(arms.elbow())
     unknown = replace(unknown, joints=(replace(unknown.joints[0], sign=0), *unknown.joints[1:]))
-    monkeypatch.setattr("ulna.exchange.export.source.load_arm", lambda _: unknown)
+    monkeypatch.setattr("ulna.exchange.export.source.Arm.load", lambda _: unknown)
     with pytest.raises(UlnaInputError) as caught:
         read_source(Path("arm.toml"), "a URDF")
     says(str(caught.value), "arm.toml: key 'joint.1.sign': got 0", "expected 1 or -1", "Calibrate first")

@@ -13,10 +13,13 @@ import pytest
 from tests.cli_runs import platinum, run
 
 import ulna
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import Effects
-from ulna.arm.model import Arm
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
 from ulna.calibration.extras import compared
-from ulna.study.data import Artefact, FitOptions, Prior, Readings, Study
+from ulna.study.data import FitOptions, Prior
+from ulna.study.study import Study
 
 PLATE = {f"s{k}": (100.0 * (k % 3), 100.0 * (k // 3), 3.0 * k) for k in range(9)}
 

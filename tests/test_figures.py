@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
 from ulna.calibration.figures import MOST_PAIRED_SEATS, figures, over_groups
-from ulna.study.data import Artefact, Readings, Study
+from ulna.study.study import Study
 
 # An "arm" whose tip is simply its first three readings, in mm: the figures see tips only.
 GANTRY: Any = SimpleNamespace(

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.small_study import ARM
 
 from ulna import Arm, Joint, Probe, UlnaInputError
-from ulna.arm.file import arm_toml, load_arm
+from ulna.arm.file import arm_toml
 
 
 def _load(tmp_path: Path, text: str) -> Arm:
@@ -92,7 +92,7 @@ def test_an_arm_written_and_read_is_the_same_to_the_last_bit(
     arm = Arm(name, (*joints, Joint(sign=-1)), {"p 1": Probe(*tip), "q": Probe(1.0, 2.0, 3.0, 4.0)})
     path = tmp_path_factory.mktemp("arm") / "arm.toml"
     path.write_bytes(arm_toml(arm).encode())
-    assert load_arm(path) == arm
+    assert Arm.load(path) == arm
 
 
 def test_saving_does_not_overwrite_unless_told(tmp_path: Path) -> None:

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from ulna import Arm, InputWarning, Result, Study
+from ulna.artefacts.readings import Readings
 from ulna.calibration.result_file import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.study.assembly import assemble
-from ulna.study.data import Readings
 
 FOSSILS = Path(__file__).parent / "data" / "fossils"
 TURN = 2 * math.pi / 163840

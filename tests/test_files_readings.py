@@ -10,9 +10,9 @@ import polars as pl
 import pytest
 from tests.small_study import BARS, PLATE, SmallStudy
 
+from ulna.artefacts.readings import Readings
 from ulna.formats.table import iter_tables, read_header, read_table
 from ulna.study.assembly import assemble
-from ulna.study.data import Readings
 
 TABLE = pl.read_csv(BARS.encode())
 Q = TABLE.select("q1", "q2", "q3").to_numpy()

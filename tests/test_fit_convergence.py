@@ -9,7 +9,7 @@ from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_2, table_4
 
-from ulna import _core
+import ulna._core as _core
 
 
 def refit(truth, groups, draw, zero_rad, length_mm, **options):

@@ -11,7 +11,7 @@ from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Points
 from tests.oracle.published import STRAIGHT_4, TABLE_2, TABLE_3, six_axes, table_2, table_3, table_4
 
-from ulna import _core
+import ulna._core as _core
 
 ENDED_WELL = {"exact", "converged-cost", "converged-step"}
 BASE = ["joint.1.theta0", "joint.1.d"]

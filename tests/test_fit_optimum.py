@@ -9,7 +9,7 @@ from tests.oracle.core import core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_4
 
-from ulna import _core
+import ulna._core as _core
 
 STATED = fits.Noise(np.array([5e-6, 6e-6, 4e-6, 8e-6, 5e-6, 1e-5, 1.2e-5]), 0.008)
 TOUCHES = virtual.Touches(6e-6, 0.008)

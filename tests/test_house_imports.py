@@ -2,107 +2,138 @@
 
 import ast
 import re
+import subprocess
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pytest
 
-#: from the bottom up; a module may import from its own line and from the lines below it
-PYTHON_LAYERS = [
-    {"_core"},
-    {"ground"},
-    {"geometry", "formats", "work"},
-    {"arm"},
-    {"artefacts", "study"},
-    {"exchange", "calibration", "measuring", "simulation", "verification", "planning", "uncertainties", "reproduce"},
-    {"documents"},
-    {"cli", "__main__"},
-]
-LAYER = {name: number for number, names in enumerate(PYTHON_LAYERS) for name in names}
-
-#: doors that stand below the files for the user's sake: Arm.load, Arm.save, Study.load; they import inside the function
-DOORS: set[tuple[str, str]] = set()
+#: every room of python/ulna on its own floor: a file may import from its own room and from rooms on lower floors.
+#: The public face (`__init__.py`) is asked by nobody inside; `_core` is the compiled core.
+FLOORS = {
+    "_core": 0,
+    "ground": 1,
+    "work": 2,
+    "formats": 2,
+    "geometry": 2,
+    "arm": 3,
+    "artefacts": 4,
+    "exchange": 4,
+    "study": 5,
+    "measuring": 6,
+    "simulation": 6,
+    "calibration": 6,
+    "verification": 7,
+    "planning": 7,
+    "reproduce": 7,
+    "uncertainties": 8,
+    "documents": 9,
+    "cli": 10,
+    "__main__": 11,
+}
 
 #: Rust modules of the core that know no kinematics
 BLIND = ("solver", "covariance", "numdiff")
 RUST_ORDER = ["arm", "kinematics", "residuals", "problem", "calibrate"]
 
 
-def python_modules(root: Path) -> list[Path]:
+def modules(root: Path) -> dict[str, Path]:
+    """Dotted name → file, of all of python/ulna."""
     package = root / "python" / "ulna"
-    return sorted(path for path in package.rglob("*.py") if path.name != "__init__.py" or path.parent != package)
-
-
-def room_of(path: Path, root: Path) -> str:
-    return path.relative_to(root / "python" / "ulna").with_suffix("").parts[0]
-
-
-def rooms_imported(tree: ast.Module) -> list[tuple[str, int, bool]]:
-    """(room, line, inside a function or for type checking only) of every import of ulna."""
-    found = []
-    for node, deferred in _walk(tree, deferred=False):
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "ulna":
-            parts = node.module.split(".")
-            rooms = [parts[1]] if len(parts) > 1 else [alias.name for alias in node.names]
-            found += [(room, node.lineno, deferred) for room in rooms]
-        elif isinstance(node, ast.Import):
-            names = [alias.name.split(".") for alias in node.names]
-            found += [(name[1], node.lineno, deferred) for name in names if name[0] == "ulna" and len(name) > 1]
+    found = {}
+    for path in package.rglob("*.py"):
+        parts = ("ulna", *path.relative_to(package).with_suffix("").parts)
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return found
 
 
-def _walk(node: ast.AST, deferred: bool) -> list[tuple[ast.AST, bool]]:
-    out = []
-    for child in ast.iter_child_nodes(node):
-        typing_only = isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)
-        later = deferred or typing_only or isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
-        out.append((child, deferred))
-        out += _walk(child, later)
-    return out
+def imported(tree: ast.AST, known: Iterable[str]) -> list[tuple[str, int]]:
+    """(module, line) of every import of ulna: at the top, inside a function, or for type checking only."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "ulna":
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                found.append((full if full in known else node.module, node.lineno))
+        elif isinstance(node, ast.Import):
+            found += [(alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "ulna"]
+    return found
 
 
-def test_every_python_room_has_a_layer(root):
-    rooms = {room_of(path, root) for path in python_modules(root)}
-    assert rooms <= set(LAYER), "give each new room its place in PYTHON_LAYERS"
+def arrows(root: Path) -> dict[str, list[tuple[str, int]]]:
+    """Who imports whom; the public face, which loads by name, is not asked."""
+    known = modules(root)
+    return {
+        name: imported(ast.parse(path.read_text(encoding="utf-8")), known)
+        for name, path in known.items()
+        if name != "ulna"
+    }
 
 
-@pytest.mark.xfail(reason="the rooms are moved; the walls between them follow with the next commit", strict=True)
-def test_python_imports_run_one_way(root):
+def room_of(module: str) -> str:
+    return module.split(".")[1] if "." in module else "ulna"
+
+
+def test_every_python_room_has_a_floor(root):
+    rooms = {room_of(name) for name in modules(root)} - {"ulna"}
+    assert rooms == set(FLOORS) - {"_core"}, "give each room its floor in FLOORS, and take out those that are gone"
+
+
+def test_nothing_lies_flat_but_the_face_and_the_entry(root):
+    flat = {path.name for path in (root / "python" / "ulna").iterdir() if path.suffix in {".py", ".pyi"}}
+    assert flat <= {"__init__.py", "__init__.pyi", "__main__.py", "_core.pyi"}
+
+
+def test_python_imports_run_down(root):
     wrong = []
-    for path in python_modules(root):
-        room = room_of(path, root)
-        for imported, line, deferred in rooms_imported(ast.parse(path.read_text(encoding="utf-8"))):
-            if imported not in LAYER or imported == room:
-                continue  # `ulna` itself offers public names; a room's own files are its own business
-            upward = LAYER[imported] > LAYER[room]
-            if upward and not (deferred and (room, imported) in DOORS):
-                wrong.append(f"{path.relative_to(root)}:{line} imports {imported} from above")
+    for name, targets in arrows(root).items():
+        for target, line in targets:
+            here, there = room_of(name), room_of(target)
+            if there == "ulna":
+                wrong.append(f"{name}:{line} asks the public face")
+            elif here != there and FLOORS[there] >= FLOORS[here]:
+                wrong.append(f"{name}:{line} imports {target} from floor {FLOORS[there]}, not below {FLOORS[here]}")
     assert wrong == []
 
 
-def test_the_import_check_sees_a_wrong_import():
-    source = "from ulna.cli import output\ndef f():\n    import ulna.documents.write\n"
-    assert rooms_imported(ast.parse(source)) == [("cli", 1, False), ("documents", 3, True)]
-
-
-@pytest.mark.xfail(reason="the rooms are moved; the walls between them follow with the next commit", strict=True)
-def test_python_rooms_of_one_layer_form_no_circle(root):
-    edges: dict[str, set[str]] = {}
-    for path in python_modules(root):
-        room = room_of(path, root)
-        for imported, _, deferred in rooms_imported(ast.parse(path.read_text(encoding="utf-8"))):
-            if imported in LAYER and imported != room and not deferred:
-                edges.setdefault(room, set()).add(imported)
+def circle_in(edges: Mapping[str, Iterable[str]]) -> list[str]:
+    """Some circle of a graph, or []."""
     done: set[str] = set()
 
-    def visit(room: str, trail: tuple[str, ...]) -> None:
-        assert room not in trail, f"circular imports: {' → '.join((*trail, room))}"
-        if room not in done:
-            for imported in sorted(edges.get(room, ())):
-                visit(imported, (*trail, room))
-            done.add(room)
+    def visit(name: str, trail: tuple[str, ...]) -> list[str]:
+        if name in trail:
+            return [*trail[trail.index(name) :], name]
+        if name in done:
+            return []
+        for target in edges.get(name, ()):
+            found = visit(target, (*trail, name))
+            if found:
+                return found
+        done.add(name)
+        return []
 
-    for room in sorted(edges):
-        visit(room, ())
+    return next(filter(None, (visit(name, ()) for name in edges)), [])
+
+
+def test_no_files_import_each_other_in_a_circle(root):
+    circle = circle_in({name: [target for target, _ in targets] for name, targets in arrows(root).items()})
+    assert circle == [], " → ".join(circle)
+
+
+def test_the_checks_see_what_they_should():
+    source = (
+        "from ulna.cli import output\ndef f():\n    import ulna.documents.write\n"
+        "if TYPE_CHECKING:\n    from ulna.study.study import Study\n"
+    )
+    known = ["ulna.cli", "ulna.cli.output", "ulna.documents.write", "ulna.study.study"]
+    assert imported(ast.parse(source), known) == [
+        ("ulna.cli.output", 1),
+        ("ulna.documents.write", 3),
+        ("ulna.study.study", 5),
+    ]
+    assert circle_in({"a": ["b"], "b": ["c"], "c": ["a"]}) == ["a", "b", "c", "a"]
+    assert circle_in({"a": ["b", "c"], "b": ["c"]}) == []
 
 
 def rust_rooms(root: Path) -> list[tuple[str, Path]]:
@@ -145,9 +176,6 @@ def test_core_is_pure_rust(root):
 
 
 def test_importing_ulna_loads_nothing_heavy(root):
-    import subprocess
-    import sys
-
     code = "import sys, ulna; print([name for name in ('numpy', 'polars', 'scipy', 'rich') if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=root)
     assert done.stdout.strip() == "[]"

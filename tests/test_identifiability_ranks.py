@@ -14,7 +14,7 @@ from tests.oracle.chain import chain
 from tests.oracle.core import core_problem, nothing_held
 from tests.oracle.published import six_axes, table_2, table_4
 
-from ulna import _core
+import ulna._core as _core
 
 BASE = {"joint.1.theta0", "joint.1.d"}
 

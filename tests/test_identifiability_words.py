@@ -10,7 +10,7 @@ from tests.oracle.observed import Lengths, stack
 from tests.oracle.published import six_axes, table_2
 from tests.test_identifiability_ranks import BASE, TABLE, case, lengths, one_seat
 
-from ulna import _core
+import ulna._core as _core
 
 
 def vector(arm, direction):

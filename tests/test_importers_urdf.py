@@ -16,7 +16,8 @@ from tests.oracle.drawn import drawn_tips
 from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
 
 from ulna import Arm, UlnaInputError
-from ulna.arm.model import Joint, Probe
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.exchange.importers.robots import panda, ur10
 from ulna.exchange.importers.urdf import import_urdf
 from ulna.exchange.urdf.arm import arm_from_chain

@@ -14,7 +14,7 @@ from tests.oracle.core import core_arm, core_problem
 from tests.oracle.observed import Points
 from tests.oracle.published import table_2
 
-from ulna import _core
+import ulna._core as _core
 
 angle = st.floats(-np.pi, np.pi)
 twist = st.floats(-3.0, 3.0)

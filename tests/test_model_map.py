@@ -8,7 +8,7 @@ from tests.oracle.core import core_arm
 from tests.oracle.published import table_2, table_4
 from tests.oracle.virtual import random_poses
 
-from ulna import _core
+import ulna._core as _core
 
 
 @pytest.fixture(params=arms.ALL, ids=str)

@@ -10,7 +10,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.cli_runs import BENT, platinum
 
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 
 Q = np.random.default_rng(3).uniform(-3, 3, (50, 7))
 HALF_TURN = np.diag([1.0, -1.0, -1.0])

@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.arm.directions import worth_naming
-from ulna.arm.model import Arm, Joint, Probe
-from ulna.cli.printed.identification import combination
-from ulna.study.data import Artefact, FitOptions, Readings, Study
+from ulna.arm.arm import Arm
+from ulna.arm.directions import combination, worth_naming
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.study.data import FitOptions
+from ulna.study.study import Study
 
 LINKS = [
     (0.1, -1.57, 35.0, 250.0),

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import Effects
-from ulna.arm.model import Arm
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.reproduce.ways.arms import SEVEN, true_arm
 from ulna.simulation.mover import Mover

@@ -16,13 +16,15 @@ from tests.cli_runs import platinum, run
 
 import ulna
 from ulna import Artefact, InputWarning, PlanSpec, UlnaInputError, _core
+from ulna.artefacts.readings import Readings
 from ulna.planning.candidates import draw
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
 from ulna.planning.order import nearest_first
 from ulna.planning.refusals import free_parameters
 from ulna.planning.trial import problem_of
 from ulna.simulation.mover import Mover
-from ulna.study.data import Noise, Readings, Study
+from ulna.study.data import Noise
+from ulna.study.study import Study
 
 BAR = Artefact("bar", "bar", {"A": (0.0, 0.0, 0.0), "B": (443.172, 0.0, 0.0)}, 443.172)
 SEAT = Artefact("cone", "seat", {"seat": (0.0, 0.0, 0.0)})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracle.published import TABLE_4
 
-from ulna import _core
+import ulna._core as _core
 
 RUNS = 1000
 #: of 1000 runs, 95 % intervals hold the truth 950 ± 7 times; with 75 of them looked at, some stray by three and a half

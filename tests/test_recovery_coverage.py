@@ -7,7 +7,7 @@ from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_4
 
-from ulna import _core
+import ulna._core as _core
 
 RUNS = 1000
 ENCODER_RAD, SEAT_MM = 5e-6, 0.008

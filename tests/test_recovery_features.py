@@ -8,7 +8,7 @@ from tests.oracle import fits, virtual
 from tests.oracle.core import core_arm
 from tests.oracle.published import table_2
 
-from ulna import _core
+import ulna._core as _core
 
 NOISE = fits.Noise(np.full(7, 5e-6), 0.008)
 NORMAL_95 = 1.959963984540054

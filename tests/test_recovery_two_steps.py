@@ -9,8 +9,11 @@ from tests.oracle.chain import cylindrical_tip
 from tests.oracle.published import STRAIGHT_4, table_4
 
 import ulna
-from ulna.arm.model import ParameterCovariance
-from ulna.study.data import Artefact, FitOptions, Noise, Readings, Study
+from ulna.arm.covariance import ParameterCovariance
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.study.data import FitOptions, Noise
+from ulna.study.study import Study
 
 ENCODER_RAD, SEAT_MM = 5e-6, 0.008
 RUNS = 400

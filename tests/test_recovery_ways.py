@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from ulna.arm.model import Arm, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
 from ulna.ground.errors import UlnaInputError
 from ulna.reproduce import STUDIES
 from ulna.reproduce.ways import comparison, trial

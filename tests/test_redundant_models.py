@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
 from ulna.study.assembly import assemble
-from ulna.study.data import Artefact, FitOptions, Readings, Study
+from ulna.study.data import FitOptions
+from ulna.study.study import Study
 
 
 def six_axes() -> Arm:

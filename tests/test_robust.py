@@ -13,7 +13,7 @@ from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths, Points
 from tests.oracle.published import table_4
 
-from ulna import _core
+import ulna._core as _core
 
 LOSSES = ["huber", "cauchy", "tukey"]
 TOUCHES = virtual.Touches(5e-6, 0.008)

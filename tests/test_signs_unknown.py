@@ -13,7 +13,7 @@ from tests.oracle.published import table_2, table_4
 from tests.small_study import SmallStudy, says
 
 import ulna
-from ulna import _core
+import ulna._core as _core
 
 
 def as_drawn(arm, rng, offsets_rad):

@@ -13,7 +13,8 @@ from scipy.optimize import least_squares
 from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
-from ulna.arm.model import Arm, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
 from ulna.formats.models import fill
 from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError

@@ -11,7 +11,8 @@ import pytest
 from tests.cli_runs import platinum, run, strict_json
 
 import ulna
-from ulna.arm.model import Arm, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
 from ulna.verification.player import play
 from ulna.verification.profile import load_profile, shipped
 from ulna.verification.steps import steps_of

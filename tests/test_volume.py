@@ -11,7 +11,8 @@ import polars as pl
 import pytest
 from tests.cli_runs import assert_bad_input, run, strict_json
 
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.ground.errors import InputWarning
 from ulna.measuring.tip_uncertainty import TipUncertainty
 from ulna.reproduce.ways import readings, trial

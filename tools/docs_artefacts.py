@@ -7,8 +7,8 @@ import numpy as np
 
 import ulna
 from docs_running import ROOT
+from ulna.artefacts.artefact import Artefact
 from ulna.simulation.spec import Drawing, Simulation, Touching
-from ulna.study.data import Artefact
 from ulna.uncertainties.volume import VolumeTask, volume_map
 
 LENGTH_MM = 900.0

@@ -12,12 +12,12 @@ from pathlib import Path
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
-from ulna.arm.file import ArmFile
+from ulna.arm.tables import ArmFile
 from ulna.calibration.result_file import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.planning.file import PlanFile
 from ulna.simulation.tables import SimulationFile
-from ulna.study.file import StudyFile
+from ulna.study.tables import StudyFile
 from ulna.uncertainties.performance_file import PerformanceFile
 from ulna.uncertainties.task_file import TaskFile
 from ulna.uncertainties.volume_file import VolumeFile

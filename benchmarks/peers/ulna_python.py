@@ -5,10 +5,10 @@ import time
 
 import numpy as np
 
+import ulna._core as _core
 from benchmarks.peers import Contender, Times
 from benchmarks.readings import ENCODER_NOISE_RAD, F64, FOUND, HELD, START, TRUTH, Lengths, lengths
 from benchmarks.tasks import REPEATED_FITS, REPEATED_LENGTHS, measure_functions
-from ulna import _core
 
 
 def _arm(x: F64) -> _core.Arm:

@@ -13,11 +13,17 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from ulna.ground.version import VERSION
+
+__version__ = VERSION
 
 if TYPE_CHECKING:
+    from ulna.arm.arm import Arm
     from ulna.arm.effects.effects import Effects
-    from ulna.arm.model import Arm, Joint, Probe
+    from ulna.arm.joint import Joint
+    from ulna.arm.probe import Probe
+    from ulna.artefacts.artefact import Artefact
+    from ulna.artefacts.readings import Readings
     from ulna.calibration.batch import Batch, batch
     from ulna.calibration.calibrate import calibrate
     from ulna.calibration.cross_validate import CrossValidation, cross_validate
@@ -26,11 +32,13 @@ if TYPE_CHECKING:
     from ulna.calibration.result import Result
     from ulna.ground.errors import InputWarning, UlnaInputError
     from ulna.measuring.measure import measure
-    from ulna.planning.plan import Plan, plan
+    from ulna.planning.outcome import Plan
+    from ulna.planning.plan import plan
     from ulna.planning.spec import PlanSpec
     from ulna.simulation.simulate import Simulated, simulate
     from ulna.simulation.spec import Simulation
-    from ulna.study.data import Artefact, FitOptions, Noise, Prior, Readings, Study
+    from ulna.study.data import FitOptions, Noise, Prior
+    from ulna.study.study import Study
     from ulna.uncertainties.assess import Assessment
     from ulna.uncertainties.uncertainty import uncertainty, volume_uncertainty
     from ulna.uncertainties.volume import VolumeMap
@@ -75,8 +83,8 @@ __all__ = [
 ]
 
 _WHERE = {
-    "Arm": "arm.model",
-    "Artefact": "study.data",
+    "Arm": "arm.arm",
+    "Artefact": "artefacts.artefact",
     "Assessment": "uncertainties.assess",
     "Batch": "calibration.batch",
     "CrossValidation": "calibration.cross_validate",
@@ -84,17 +92,17 @@ _WHERE = {
     "Evaluation": "calibration.evaluate",
     "FitOptions": "study.data",
     "InputWarning": "ground.errors",
-    "Joint": "arm.model",
+    "Joint": "arm.joint",
     "Noise": "study.data",
-    "Plan": "planning.plan",
+    "Plan": "planning.outcome",
     "PlanSpec": "planning.spec",
     "Prior": "study.data",
-    "Probe": "arm.model",
-    "Readings": "study.data",
+    "Probe": "arm.probe",
+    "Readings": "artefacts.readings",
     "Result": "calibration.result",
     "Simulated": "simulation.simulate",
     "Simulation": "simulation.spec",
-    "Study": "study.data",
+    "Study": "study.study",
     "UlnaInputError": "ground.errors",
     "Verification": "verification.verify",
     "VolumeMap": "uncertainties.volume",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ulna import _core
+import ulna._core as _core
 
 from .chain import Chain
 from .effects import Affected

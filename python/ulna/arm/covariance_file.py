@@ -7,18 +7,17 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.data import ArmData
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
-
-F64 = NDArray[np.float64]
 
 _SLACK = 1e-6
 """Rounding that is forgiven, in units of correlation."""
 
 
-def covariance_of_result(document: dict[str, Any], arm: Arm, path: Path) -> ParameterCovariance:
+def covariance_of_result(document: dict[str, Any], arm: ArmData, path: Path) -> ParameterCovariance:
     """The keys `covariance` and `identifiability.lost` of a result document: of all its parameters, the dimensions of
     artefacts too. Raises UlnaInputError."""
     try:
@@ -36,7 +35,7 @@ def covariance_of_result(document: dict[str, Any], arm: Arm, path: Path) -> Para
     return ParameterCovariance(names, _matrix(rows, names, path), [dict(direction) for direction in lost])
 
 
-def noise_of_result(document: dict[str, Any], arm: Arm, path: Path) -> F64 | None:
+def noise_of_result(document: dict[str, Any], arm: ArmData, path: Path) -> F64 | None:
     """The encoders' standard deviations (n,) rad, where the study stated them. Raises UlnaInputError."""
     provenance = document.get("provenance")
     noise = provenance.get("noise") if isinstance(provenance, dict) else None
@@ -92,7 +91,7 @@ def _matrix(rows: Any, names: list[str], path: Path) -> F64:
     return matrix
 
 
-def _check_direction(direction: Any, arm: Arm, path: Path, key: str) -> None:
+def _check_direction(direction: Any, arm: ArmData, path: Path, key: str) -> None:
     weights = direction.get("combination") if isinstance(direction, dict) else None
     if not isinstance(weights, dict) or not weights:
         _damaged(path, f"{key}.combination", "expected a table of parameters and weights")
@@ -105,7 +104,7 @@ def _check_direction(direction: Any, arm: Arm, path: Path, key: str) -> None:
             _damaged(path, f"{key}.{text}", "expected a text")
 
 
-def _known(name: Any, arm: Arm, path: Path, key: str) -> None:
+def _known(name: Any, arm: ArmData, path: Path, key: str) -> None:
     if name not in arm.parameter_names and not str(name).startswith("artefact."):
         _damaged(
             path,

@@ -34,11 +34,6 @@ def worth_naming(combination: Mapping[str, float]) -> dict[str, float]:
     return {name: weight for name, weight in combination.items() if sizes[name] >= least}
 
 
-def sentence(text: str) -> str:
-    """With a full stop; the core's reasons are clauses."""
-    return text if text.endswith(".") else f"{text}."
-
-
 def combination(weights: Mapping[str, float]) -> str:
     """One parameter by its name; several with the steps, in rad and mm, that together change no residual."""
     if len(weights) == 1:
@@ -50,6 +45,11 @@ def combination(weights: Mapping[str, float]) -> str:
         + ", ".join(f"{name} {_step(weight)} {unit_of(name)}" for name, weight in ordered)
         + (f", and {unnamed} more by next to nothing" if unnamed else "")
     )
+
+
+def sentence(text: str) -> str:
+    """With a full stop; the core's reasons are clauses."""
+    return text if text.endswith(".") else f"{text}."
 
 
 def _step(weight: float) -> str:

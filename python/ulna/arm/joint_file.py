@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from ulna.arm.effects.effects import Effects
-from ulna.arm.model import Joint
+from ulna.arm.joint import Joint
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError

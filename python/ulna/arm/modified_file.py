@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ulna.ground.errors import UlnaInputError
 
 if TYPE_CHECKING:
-    from ulna.arm.file import ArmFile
+    from ulna.arm.tables import ArmFile
 
 
 def check_modified(file: ArmFile, path: Path) -> None:

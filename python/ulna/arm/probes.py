@@ -8,9 +8,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
+from ulna.ground.arrays import F64
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def probe_views(arm: Arm, status: Mapping[str, str], covariance: ParameterCovari
     return views
 
 
-def _tip_covariance(names: list[str], covariance: ParameterCovariance) -> NDArray[np.float64]:
+def _tip_covariance(names: list[str], covariance: ParameterCovariance) -> F64:
     """(3, 3) of x, y, z; held coordinates have none."""
     c = np.zeros((3, 3))
     known = [k for k, name in enumerate(names) if name in covariance.names]

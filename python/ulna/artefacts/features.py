@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.table import read_header
+from ulna.formats.unused import remark_strange
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-from ulna.study.readings.columns import remark_strange
 
 WHAT = "a features file (a table with columns feature,x,y,z or feature,x,y,z,u)"
 COLUMNS = ("feature", "x", "y", "z", "u")
@@ -34,9 +34,9 @@ def open_features(file: Path, keys: TableKeys | None, key: str, study: Path, rem
     return header
 
 
-def uncertainties(header: Header, frame: pl.DataFrame, row: NDArray[np.int64]) -> NDArray[np.float64]:
+def uncertainties(header: Header, frame: pl.DataFrame, row: I64) -> F64:
     """The column `u`, (N,) in the unit of the file; `row` says where each stands in it. Raises UlnaInputError."""
-    u: NDArray[np.float64] = frame["u"].to_numpy()
+    u: F64 = frame["u"].to_numpy()
     if (u < 0).any():
         first = int(np.argmax(u < 0))
         raise UlnaInputError(

@@ -8,14 +8,15 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Discriminator, Field, Tag
 
-from ulna.arm.file import check_name
+from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.features import COLUMNS, open_features, uncertainties
+from ulna.artefacts.readings import InputFile
 from ulna.formats.layout import TableKeys
 from ulna.formats.models import Strict, check_kind
+from ulna.formats.names import check_name
 from ulna.formats.table import file_sha256, read_table
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Artefact, InputFile
 
 KINDS = ("bar", "seat", "points", "length", "sphere", "plane")
 

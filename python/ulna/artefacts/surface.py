@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.study.data import Readings
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64
 
 #: touches that leave something to judge: one more than a sphere or a plane can meet
 FEWEST = {"sphere": 5, "plane": 4}

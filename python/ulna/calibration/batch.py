@@ -13,13 +13,13 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, Literal
 
-import ulna
+from ulna.calibration.calibrate import calibrate
 from ulna.calibration.provenance import provenance
 from ulna.calibration.result import FILES, Result
 from ulna.formats.output import refuse_inputs
 from ulna.formats.toml import read_json
 from ulna.ground.errors import InputWarning, UlnaInputError
-from ulna.study.data import Study
+from ulna.study.study import Study
 from ulna.work.pieces import Threads, Workers
 
 Progress = Callable[[str, int, int], None]
@@ -155,7 +155,7 @@ def _calibrate(study: Study) -> Result | str:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)
         try:
-            return ulna.calibrate(study)
+            return calibrate(study)
         except UlnaInputError as error:
             return str(error)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.arm.model import ParameterCovariance
+from ulna.arm.covariance import ParameterCovariance
 from ulna.calibration.estimators import Searched, search_box
 from ulna.calibration.extras import judge_extras
 from ulna.calibration.figures import figures
@@ -22,11 +22,11 @@ from ulna.calibration.residuals import residual_table
 from ulna.calibration.result import FitSummary, Parameter, Result
 from ulna.calibration.running import run_assembled
 from ulna.study.assembly import Assembled, assemble
-from ulna.study.data import Study
 from ulna.study.options import with_options
+from ulna.study.study import Study
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -90,7 +90,7 @@ def _covariance(
     What is not known of a held parameter passes on to those fitted around it: with S = ∂(fitted)/∂(held), C_fitted
     grows by S C_held Sᵀ and the two are correlated by S C_held (consider covariance, Schmidt 1966).
     """
-    from ulna import _core
+    import ulna._core as _core
 
     names, hold = assembled.names, assembled.hold
     fitted_names = [names[column] for column in fitted.covariance_columns]

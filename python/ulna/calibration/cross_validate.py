@@ -25,9 +25,9 @@ from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
-from ulna.study.data import Study
 from ulna.study.options import with_options
 from ulna.study.parameters import hold_mask
+from ulna.study.study import Study
 
 FORMAT = "ulna-cross-validation/1"
 FILES = ("cross-validation.json",)

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import Assembled
-from ulna.study.data import FitOptions, Study
+from ulna.study.data import FitOptions
+from ulna.study.study import Study
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -51,7 +52,7 @@ class _Counted:
 
     def __call__(self, x: F64) -> Any:
         """(k,) → a number; (k, S) → (S,)."""
-        from ulna import _core
+        import ulna._core as _core
 
         sets = np.ascontiguousarray(np.atleast_2d(x.T))
         costs = _core.costs(self._assembled.problem, self._hold, sets)

@@ -13,14 +13,15 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.calibration.figures import Figures, PlacementFigures, figures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.data import FitOptions, Study
+from ulna.study.data import FitOptions
+from ulna.study.study import Study
 
 FORMAT = "ulna-evaluation/1"
 FILES = ("evaluation.json", "residuals.csv")

@@ -22,7 +22,7 @@ from ulna.calibration.folds import Fold, folds
 from ulna.calibration.running import run_fit
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 Progress = Callable[[str, int, int], None]
 Verdict = Literal["earned", "undecided", "not-earned"]

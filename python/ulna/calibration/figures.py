@@ -26,10 +26,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.readings import Readings
 from ulna.artefacts.surface import Errors, surface_errors
 from ulna.study.assembly import balls_mm, warmth_k
-from ulna.study.data import SURFACES, Readings, Study
+from ulna.study.study import Study
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -251,3 +253,11 @@ def over_groups(groups: Iterable[Figures]) -> Figures:
         else:
             found[name] = float(values.mean())
     return found
+
+
+def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
+    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
+    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
+    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
+        return [name for name in columns if name not in (mean, largest)]
+    return list(columns)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ulna.calibration.figures import placements
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 Bool = NDArray[np.bool_]
 I64 = NDArray[np.int64]

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def identify(study: Study) -> Identification:
 
     The study's `fit.free` and `fit.hold` say what is asked about. Raises UlnaInputError.
     """
-    from ulna import _core
+    import ulna._core as _core
 
     assembled = assemble(study)
     if assembled.hold.all():

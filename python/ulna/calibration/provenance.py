@@ -6,8 +6,8 @@ import dataclasses
 from datetime import datetime
 from typing import Any
 
-import ulna
-from ulna.study.data import Study
+from ulna.ground.version import VERSION
+from ulna.study.study import Study
 
 
 def provenance(study: Study, when: datetime, seconds: float | None = None) -> dict[str, Any]:
@@ -23,7 +23,7 @@ def provenance(study: Study, when: datetime, seconds: float | None = None) -> di
         }
     return {
         "program": "ulna",
-        "version": ulna.__version__,
+        "version": VERSION,
         "study": None if study.path is None else str(study.path),
         **({} if study.rows is None else {"rows": study.rows}),
         "files": [{"path": str(file.path), "sha256": file.sha256, "rows": file.rows} for file in study.files],

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.arm.model import Arm
+from ulna.ground.arrays import Arrays
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
-from ulna.study.data import Study
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.study.study import Study
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
 
@@ -100,7 +101,7 @@ def recalibrated(
 
 def _piece(study: Study, truth: Arm, seed: int, piece: tuple[int, int]) -> Arrays:
     """One piece: runs (first, count)."""
-    from ulna import _core
+    import ulna._core as _core
 
     first, count = piece
     assembled = assemble(study.with_arm(study.arm.with_signs(truth.signs)))

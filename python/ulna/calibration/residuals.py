@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
-from ulna.study.data import SURFACES, Readings, Study
+from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.readings import Readings
+from ulna.study.study import Study
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
 SCHEMA: dict[str, Any] = {
     "row": pl.Int64,

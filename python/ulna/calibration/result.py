@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import polars as pl
 
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import covariance_of_result
-from ulna.arm.file import arm_document, arm_of_result, arm_toml
-from ulna.arm.model import Arm, ParameterCovariance
+from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.probes import ProbeView, probe_views
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import Figures, PlacementFigures
@@ -25,7 +26,7 @@ from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
 FORMAT = "ulna-result/1"
 FILES = ("result.json", "arm.toml", "residuals.csv")
@@ -185,7 +186,7 @@ class Result:
         path = path / "result.json" if path.is_dir() else path
         document, _ = read_json(path, "a result.json")
         check_format(document, path, "ulna-result")
-        arm = arm_of_result(document, path)
+        arm = Arm.of_result(document, path)
         try:
             return cls(
                 arm=arm,

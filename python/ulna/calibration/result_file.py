@@ -11,8 +11,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from ulna.arm.file import CartesianTip
 from ulna.arm.joint_file import JointTable
+from ulna.arm.tables import CartesianTip
 
 
 class Open(BaseModel):

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import Assembled, assemble
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
 Progress = Callable[[str, int, int], None]
 
@@ -35,7 +35,7 @@ def run_assembled(
     from_parameters: NDArray[np.float64] | None = None,
 ) -> _core.Fitted:
     """The same, of a study that is in the core already; from other parameters than the arm file's where given."""
-    from ulna import _core
+    import ulna._core as _core
 
     options = study.fit
     unknown = study.arm.unknown_signs

@@ -6,12 +6,12 @@ import sys
 
 import typer
 
-from ulna.cli.options import Force, Json, OutFolder, Study
+from ulna.cli.options import Force, Json, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
-def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
     Prints the figures before and after, the parameters with their standard uncertainties, what the readings could not
@@ -21,19 +21,20 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
-    import ulna
+    from ulna.calibration.calibrate import calibrate as run_calibration
     from ulna.calibration.result import FILES
     from ulna.cli import output
     from ulna.cli.printed.calibration import calibration_report, where_to_look
     from ulna.formats.output import check_output, refuse_inputs
+    from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
-    loaded = ulna.Study.load(study)
+    loaded = Study.load(study)
     if out is not None:
         refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     with output.progress_bar() as progress:
-        result = ulna.calibrate(loaded, progress)
+        result = run_calibration(loaded, progress)
     if out is not None:
         result.save(out, force)
     if as_json:

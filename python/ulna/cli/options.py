@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-Study = Annotated[Path, typer.Argument(metavar="STUDY", help="The study file (TOML).", show_default=False)]
+StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="The study file (TOML).", show_default=False)]
 ArmFile = Annotated[
     Path, typer.Argument(metavar="ARM", help="An arm.toml, or the result.json of a calibration.", show_default=False)
 ]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ulna.artefacts.readings import Readings
 from ulna.calibration.result import Result
-from ulna.study.data import Readings, Study
+from ulna.study.study import Study
 
 
 @dataclass(frozen=True)

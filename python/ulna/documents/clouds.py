@@ -8,9 +8,11 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.readings import Readings
 from ulna.study.assembly import warmth_k
-from ulna.study.data import SURFACES, Readings, Study
+from ulna.study.study import Study
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 
 @dataclass(frozen=True)

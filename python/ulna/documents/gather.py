@@ -28,7 +28,7 @@ from ulna.documents.sources.result import read_calibration
 from ulna.documents.sources.source import Calibration, Source, Taken, take
 from ulna.documents.sources.study import find_study
 from ulna.documents.sources.verification import VERIFICATION
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 T = TypeVar("T")
 Progress = Callable[[str, int, int], None]

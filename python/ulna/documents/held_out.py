@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.figures import figures
 from ulna.calibration.result import Result
 from ulna.documents.quality import QualityRow, quality_rows
 from ulna.documents.said import Said
 from ulna.documents.sources.source import Taken
-from ulna.study.data import Study
 from ulna.study.file import rows_to_judge
+from ulna.study.study import Study
 
 #: what is said of held-out readings that weakens what they show
 CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study", "held-out.unknown-arm")

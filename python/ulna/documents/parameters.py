@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.arm.model import ParameterCovariance
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.probes import ProbeView
+from ulna.calibration.observability import indices
 from ulna.calibration.result import Result
-from ulna.planning.information import indices
 from ulna.uncertainties.gum import coverage_factor
 
 F64 = NDArray[np.float64]

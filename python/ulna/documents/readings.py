@@ -9,7 +9,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.calibration.result import Result
-from ulna.study.data import Study
+from ulna.study.study import Study
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

@@ -16,8 +16,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
 #: true for the name of a column that holds numbers
@@ -30,7 +30,7 @@ class Piece:
 
     before: int
     """Number of data rows before the first of these."""
-    numbers: NDArray[np.float64]
+    numbers: F64
     """(N, k), finite, C order."""
     texts: dict[str, pl.Series]
     """(N,) each, no empty cell."""
@@ -127,7 +127,7 @@ class Header(ABC):
         self,
         frame: pl.DataFrame,
         numeric: Numeric,
-        row: NDArray[np.int64] | None = None,
+        row: I64 | None = None,
         before: int = 0,
         blank: Sequence[str] = (),
     ) -> pl.DataFrame:

@@ -12,15 +12,14 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from ulna.formats.header import Header
 from ulna.formats.models import Strict
+from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
 
-I64 = NDArray[np.int64]
 Rows = Literal["fit", "check", "all"]
 
 #: values of a column named in a message

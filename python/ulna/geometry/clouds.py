@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-
-F64 = NDArray[np.float64]
 
 #: extents of a set along its principal directions, over the largest, below which it has no extent there: what rounding
 #: leaves of points with coordinates a thousand times their distance apart

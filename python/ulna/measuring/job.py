@@ -12,9 +12,10 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.covariance_file import noise_of_result
-from ulna.arm.file import WHAT, arm_of_result, load_arm
-from ulna.arm.model import Arm
+from ulna.arm.file import WHAT
+from ulna.arm.joint import MOST_RAD
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, read_header, stream
@@ -22,7 +23,6 @@ from ulna.formats.toml import check_format, read_json
 from ulna.formats.units import MM_PER
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
-from ulna.study.readings.checks import MOST_RAD
 from ulna.study.readings.columns import check_columns, known_columns
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 
@@ -244,8 +244,8 @@ def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
     """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
     stated. Raises UlnaInputError."""
     if path.suffix.lower() != ".json":
-        return load_arm(path), None
+        return Arm.load(path), None
     document, _ = read_json(path, WHAT)
     check_format(document, path, "ulna-result")
-    arm = arm_of_result(document, path)
+    arm = Arm.of_result(document, path)
     return arm, noise_of_result(document, arm, path)

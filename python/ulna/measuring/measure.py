@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.output import new_file, refuse_inputs
 from ulna.measuring.job import MeasureJob

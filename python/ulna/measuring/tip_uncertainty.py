@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.directions import steps, worth_naming
-from ulna.arm.model import Arm
 from ulna.work.cores import available_cores
 
 F64 = NDArray[np.float64]

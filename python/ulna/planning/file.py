@@ -8,17 +8,16 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.stated import PositiveEach, TravelTable, VolumeTable, encoder_of, travel_of, volume_of
+from ulna.artefacts.artefact import SURFACES
 from ulna.artefacts.kinds import ArtefactTable, check_kinds, make_artefact
 from ulna.formats.models import Strict, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
 from ulna.planning.spec import Criterion, PlanSpec
-from ulna.simulation.file import encoder_of, travel_of, volume_of
-from ulna.simulation.tables import PositiveEach, TravelTable, VolumeTable
-from ulna.study.data import SURFACES
-from ulna.study.file import load_study
+from ulna.study.study import Study
 
 WHAT = 'a plan file (TOML, format = "ulna-plan/1")'
 
@@ -90,7 +89,7 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
             f"{path}: key 'artefact.{name}.features' is missing; a plan needs to know what is touched. Add it."
         )
     surface = artefact.kind in SURFACES
-    study = None if table.taken is None else load_study(path.parent / table.taken)
+    study = None if table.taken is None else Study.load(path.parent / table.taken)
     files = [path, *([] if features_file is None else [features_file.path])]
     files += [] if study is None else [file.path for file in study.files]
     return PlanSpec(

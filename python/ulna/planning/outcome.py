@@ -1,22 +1,73 @@
-"""A plan on disk: the list for the operator, the machine form, the pictures."""
+"""What came out of planning: the measurements to take; the list for the operator, the machine form, the pictures."""
 
 from __future__ import annotations
 
 import dataclasses
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
 
+from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
-from ulna.planning.plan import Plan
+from ulna.ground.arrays import F64
+from ulna.planning.candidates import Candidates
 from ulna.planning.scene import Figures
+from ulna.planning.spec import PlanSpec
 from ulna.planning.touchable import touchable, turned
+from ulna.planning.trial import Trial
 
 FORMAT = "ulna-plan-result/1"
 FILES = ["plan.csv", "plan.json", "places.svg", "places.png", "curve.svg", "curve.png"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Measurements to take, in their order."""
+
+    arm: Arm
+    spec: PlanSpec
+    chosen: Candidates
+    """In order of work."""
+    planned: Figures
+    random: Figures
+    """The mean of random sets of the same size."""
+    paper: Figures | None
+    """The mean of 101 random measurements; None where they do not determine what is free."""
+    observability: dict[str, float]
+    """O1 to O5."""
+    random_observability: dict[str, float]
+    curve: list[tuple[int, float, float]]
+    """Number, then the root mean square length uncertainty (mm) of the best choice of so many and of random ones."""
+    trial: Trial | None
+    """The same by simulation; None where none was asked for, or where readings were taken already."""
+    determined: int
+    """Directions of the parameters that the candidates determine, of `free`."""
+    free: int
+    candidates: int
+    seconds: dict[str, float]
+    """Of drawing candidates with their rows, of what they are judged by, and of choosing."""
+
+    @property
+    def q_rad(self) -> F64:
+        """(choose, K, touches, n) encoder angles."""
+        return self.chosen.poses(np.arange(len(self.chosen)))
+
+    @property
+    def gain(self) -> float:
+        """By which part the expected length uncertainty is smaller than that of random measurements."""
+        return 1.0 - self.planned.u_length_mm / self.random.u_length_mm
+
+    def save(self, folder: str | Path, force: bool = False) -> None:
+        """Write plan.csv, plan.json and the pictures. Raises UlnaInputError."""
+        save(self, Path(folder), force)
+
+    def as_dict(self) -> dict[str, Any]:
+        """`plan.json`: JSON types only."""
+        return as_dict(self)
 
 
 def save(plan: Plan, folder: Path, force: bool = False) -> None:
@@ -27,8 +78,9 @@ def save(plan: Plan, folder: Path, force: bool = False) -> None:
         steps(plan).write_csv(staging / "plan.csv")
         text = json.dumps(as_dict(plan), indent=1, ensure_ascii=False, allow_nan=False)
         (staging / "plan.json").write_text(text + "\n", encoding="utf-8")
-        draw_places(plan, staging)
-        draw_curve(plan, staging)
+        draw_places(plan.chosen.features_mm[np.unique(plan.chosen.place)], staging)
+        paper = None if plan.paper is None else (plan.paper.measurements, plan.paper.u_length_mm)
+        draw_curve(plan.curve, paper, staging)
 
 
 def steps(plan: Plan) -> pl.DataFrame:

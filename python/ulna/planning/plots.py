@@ -8,19 +8,18 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from ulna.ground.arrays import F64
 from ulna.ground.style import BLUE, GREY, STYLE, VERMILION, save_picture
-from ulna.planning.plan import Plan
 
 
-def draw_places(plan: Plan, folder: Path) -> None:
-    """`places`: where the artefact stands, from above and from the side, the base at the origin."""
-    places = plan.chosen.features_mm[np.unique(plan.chosen.place)]
+def draw_places(places_mm: F64, folder: Path) -> None:
+    """`places`: where the artefact's features stand, (S, K, 3), seen from above and from the side; base at 0."""
     with rc_context(STYLE):
         figure = Figure(figsize=(7.2, 3.9), layout="constrained")
         for axes, (across, up), title in zip(
             figure.subplots(1, 2), ((0, 1), (0, 2)), ("from above", "from the side"), strict=True
         ):
-            for points in places:
+            for points in places_mm:
                 axes.plot(points[:, across], points[:, up], color=BLUE, linewidth=0.9, alpha=0.6)
                 axes.plot(points[:, across], points[:, up], color=BLUE, linestyle="", marker="o", markersize=2.5)
             axes.plot(0, 0, color=VERMILION, marker="s", markersize=7, linestyle="")
@@ -32,17 +31,18 @@ def draw_places(plan: Plan, folder: Path) -> None:
         save_picture(figure, folder, "places")
 
 
-def draw_curve(plan: Plan, folder: Path) -> None:
-    """`curve`: how the expected length uncertainty falls with the number of measurements."""
-    counts, own, by_chance = (np.array(values) for values in zip(*plan.curve, strict=True))
+def draw_curve(curve: list[tuple[int, float, float]], paper: tuple[int, float] | None, folder: Path) -> None:
+    """`curve`: how the expected length uncertainty (mm, planned and random) falls with the number of measurements;
+    paper: a number of random measurements, and what they reach."""
+    counts, own, by_chance = (np.array(values) for values in zip(*curve, strict=True))
     with rc_context(STYLE):
         figure = Figure(figsize=(6.4, 3.8), layout="constrained")
         axes = figure.subplots()
         axes.plot(counts, 1000 * by_chance, color=VERMILION, marker="s", label="random")
         axes.plot(counts, 1000 * own, color=BLUE, marker="o", label="planned")
-        if plan.paper is not None:
-            label = f"{plan.paper.measurements} random"
-            axes.axhline(1000 * plan.paper.u_length_mm, color=GREY, linestyle="--", linewidth=1, label=label)
+        if paper is not None:
+            label = f"{paper[0]} random"
+            axes.axhline(1000 * paper[1], color=GREY, linestyle="--", linewidth=1, label=label)
         axes.set_xlabel("measurements")
         axes.set_ylabel("expected length uncertainty / µm")
         axes.set_yscale("log")

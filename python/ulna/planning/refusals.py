@@ -5,17 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES
+from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError
 from ulna.planning.candidates import EACH
 from ulna.planning.spec import PlanSpec
 from ulna.study.assembly import check_balls
-from ulna.study.data import SURFACES, FitOptions, Study
+from ulna.study.data import FitOptions
 from ulna.study.parameters import hold_mask
-
-I64 = NDArray[np.int64]
+from ulna.study.study import Study
 
 LEAST_TOUCHES = 4
 """Of a surface: three only say where it is."""

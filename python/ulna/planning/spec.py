@@ -6,13 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
+from ulna.arm.stated import Box
+from ulna.artefacts.artefact import Artefact
+from ulna.ground.arrays import F64
+from ulna.study.study import Study
 
-from ulna.study.data import Artefact, Study
-
-F64 = NDArray[np.float64]
-Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 Criterion = Literal["D", "A", "E", "G", "length", "length-worst", "point"]
 
 

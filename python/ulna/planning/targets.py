@@ -6,16 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64, I64
 from ulna.planning.information import Coordinates
 from ulna.planning.spec import PlanSpec
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 LENGTHS = 500
 """Test bars in random places and directions, touched in random postures."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES
+from ulna.ground.arrays import F64
 from ulna.planning.spec import PlanSpec
 from ulna.simulation.places import Standing
 from ulna.simulation.spec import Touching
 from ulna.simulation.touches import touches_of
-from ulna.study.data import SURFACES
-
-F64 = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.arm.model import Arm
+from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
 from ulna.planning.spec import PlanSpec
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Progress = Callable[[str, int, int], None]
 
 PIECE_RUNS = 50
 """Calibrations in a piece: some tenths of a second where bars are touched at both ends."""
@@ -49,7 +45,7 @@ class Trial:
 
 def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Problem:
     """The core's problem of measurements (count, K, t, n), each a placement of its own, readings exact."""
-    from ulna import _core
+    import ulna._core as _core
 
     count, features, touches, n = q_rad.shape
     per = features * touches
@@ -125,13 +121,13 @@ def _piece(
     arm: Arm,
     spec: PlanSpec,
     probe: int,
-    hold: NDArray[np.bool_],
+    hold: Bool,
     sets: list[F64],
     bars_rad: F64,
     piece: tuple[int, int, int],
 ) -> Arrays:
     """Which set, and runs (first, count): the mean square error (mm²) of the bars' lengths by each calibrated arm."""
-    from ulna import _core
+    import ulna._core as _core
 
     number, first, count = piece
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ulna.study.data import Artefact, Readings
-
-if TYPE_CHECKING:
-    from ulna.simulation.simulate import Simulated, TrueTouching
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.simulation.spec import Simulation
+from ulna.simulation.truth import TrueTouching, Truth
+from ulna.study.study import Study
 
 FORMAT = "ulna-truth/1"
 
 
-def account(simulated: Simulated) -> dict[str, Any]:
+def account(simulation: Simulation, study: Study, truth: Truth) -> dict[str, Any]:
     """JSON types only, no NaN: true and drawn parameters, true dimensions and placements, missed touches."""
-    simulation, study, truth = simulated.simulation, simulated.study, simulated.truth
     drawn = dict(zip(study.arm.parameter_names, study.arm.parameters.tolist(), strict=True))
     arm = truth.arm
     parameters = [

@@ -5,31 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ulna.arm.file import load_arm
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.stated import encoder_of, one_per_joint, travel_of, volume_of
 from ulna.artefacts.kinds import check_kinds, make_artefact
 from ulna.formats.models import fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.spec import Drawing, Missed, Simulation, Temperature, Touching
-from ulna.simulation.tables import (
-    DrawingTable,
-    SimulatedPlane,
-    SimulatedTable,
-    SimulationFile,
-    TemperatureTable,
-    TravelTable,
-    VolumeTable,
-)
+from ulna.simulation.tables import DrawingTable, SimulatedPlane, SimulatedTable, SimulationFile, TemperatureTable
 from ulna.study.data import FitOptions
 
 WHAT = 'a simulation file (TOML, format = "ulna-simulation/1")'
 
-F64 = NDArray[np.float64]
 
 #: what is not said of a kind
 PLACEMENTS = {"seat": 1, "bar": 100, "length": 100}
@@ -43,7 +31,7 @@ def load_simulation(path: Path) -> Simulation:
     check_kinds(document, path)
     file = fill(SimulationFile, document, path)
     units, arm_path = file.units, path.parent / file.arm
-    arm = _counted(file, load_arm(arm_path), path)
+    arm = _counted(file, Arm.load(arm_path), path)
     files = [path, arm_path]
     touching = [_touching(name, table, units, path, files) for name, table in file.artefact.items()]
     encoder = file.noise.encoder
@@ -108,60 +96,13 @@ def _drawing(table: DrawingTable | str, units: Units) -> Drawing | None:
     )
 
 
-def _one_per_joint(given: float | list[float], arm: Arm, key: str, path: Path) -> list[float]:
-    each = given if isinstance(given, list) else [given] * arm.n
-    if len(each) != arm.n:
-        raise UlnaInputError(
-            f"{path}: key '{key}': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
-            f"'{arm.name}'. Correct it."
-        )
-    return each
-
-
-def encoder_of(given: float | list[float], arm: Arm, path: Path) -> F64:
-    """(n,) in the file's angle unit. Raises UlnaInputError."""
-    each = _one_per_joint(given, arm, "noise.encoder", path)
-    if any(each) and not all(each):
-        raise UlnaInputError(
-            f"{path}: key 'noise.encoder': got 0 for joint {each.index(0.0) + 1}, but noise for others; expected none "
-            "at all or more than 0 for each: a study cannot state a single joint as exact. Correct it."
-        )
-    return np.array(each, dtype=np.float64)
-
-
 def _counted(file: SimulationFile, arm: Arm, path: Path) -> Arm:
     given = file.noise.counts_per_turn
     if given is None:
         return arm
-    each = _one_per_joint(given, arm, "noise.counts_per_turn", path)
+    each = one_per_joint(given, arm, "noise.counts_per_turn", path)
     joints = [replace(joint, counts_per_turn=float(counts)) for joint, counts in zip(arm.joints, each, strict=True)]
     return replace(arm, joints=tuple(joints))
-
-
-def travel_of(table: TravelTable | None, arm: Arm, units: Units, path: Path) -> F64 | None:
-    """(n, 2) rad, within the arm's limits. Raises UlnaInputError."""
-    if table is None:
-        return None
-    pairs = table.limits * arm.n if len(table.limits) == 1 else table.limits
-    if len(pairs) != arm.n:
-        raise UlnaInputError(
-            f"{path}: key 'travel.limits': got {len(pairs)} pairs, expected one, or {arm.n}: one per joint of arm "
-            f"'{arm.name}'. Correct it."
-        )
-    travel_rad = np.array(pairs) * units.rad
-    for k, ((low, high), joint) in enumerate(zip(travel_rad.tolist(), arm.joints, strict=True), start=1):
-        if not low < high:
-            raise UlnaInputError(
-                f"{path}: key 'travel.limits': got {pairs[k - 1]} for joint {k}, expected the lower limit first. Swap "
-                "them."
-            )
-        own = joint.limits_rad
-        if own is not None and (low < own[0] - 1e-9 or high > own[1] + 1e-9):
-            raise UlnaInputError(
-                f"{path}: key 'travel.limits': got {low:g} to {high:g} rad for joint {k}, but the arm file's limits "
-                f"are {own[0]:g} to {own[1]:g} rad; expected a travel within them. Correct one of them."
-            )
-    return travel_rad
 
 
 def _temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> Temperature | None:
@@ -173,19 +114,3 @@ def _temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> Temper
             "of its joints in the arm file. Add it, or remove the key."
         )
     return Temperature(table.mean, table.spread)
-
-
-def volume_of(
-    table: VolumeTable | None, units: Units, path: Path, key: str = "volume"
-) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-    """Corners of a box, mm. Raises UlnaInputError."""
-    if table is None:
-        return None
-    (x, y, z), (right, back, top) = table.low, table.high
-    if not (x < right and y < back and z < top):
-        raise UlnaInputError(
-            f"{path}: key '{key}': got low {table.low} and high {table.high}; expected every coordinate of low below "
-            "that of high. Swap or correct them."
-        )
-    mm = units.mm
-    return (x * mm, y * mm, z * mm), (right * mm, back * mm, top * mm)

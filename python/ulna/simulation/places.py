@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.stated import Box
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.planning.spec import Box
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import turns
-
-F64 = NDArray[np.float64]
 
 BARREN = 20
 """Rounds of drawing that find no place before it is said that there is none."""

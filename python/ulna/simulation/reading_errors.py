@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import extra_of
-from ulna.arm.model import Arm
-
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 TRIES = 400
 """Random elbows and wrists to try for a point, so that one at the edge of the arm's travel is not given up."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import Effects
-from ulna.arm.model import Arm
+from ulna.artefacts.readings import Readings
 from ulna.formats.output import output_folder, refuse_inputs
+from ulna.ground.arrays import F64, I64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.account import account
 from ulna.simulation.mover import Mover
@@ -21,35 +21,9 @@ from ulna.simulation.spec import Simulation, Touching
 from ulna.simulation.standing import Standings, stand
 from ulna.simulation.study_files import names_for, texts, write_tables
 from ulna.simulation.touches import probes_of, touches_of, true_artefact
-from ulna.study.data import Artefact, Noise, Readings, Study
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
-
-
-@dataclass(frozen=True)
-class TrueTouching:
-    """What nobody knows of the readings of one artefact."""
-
-    artefact: Artefact
-    """As it really is."""
-    standings: Standings
-    """Where it stood, and the true encoder angles."""
-
-    @property
-    def missed(self) -> NDArray[np.bool_]:
-        """(N,) readings that are missed touches; length rows: of either end."""
-        missed = self.standings.missed
-        return np.asarray(missed.any(axis=1)) if self.artefact.kind == "length" else missed.reshape(-1)
-
-
-@dataclass(frozen=True)
-class Truth:
-    """The true arm and artefacts behind simulated readings."""
-
-    arm: Arm
-    touchings: list[TrueTouching]
-    """One for each of the study's readings, in their order."""
+from ulna.simulation.truth import TrueTouching, Truth
+from ulna.study.data import Noise
+from ulna.study.study import Study
 
 
 @dataclass(frozen=True)
@@ -63,7 +37,7 @@ class Simulated:
 
     def as_dict(self) -> dict[str, Any]:
         """`truth.json`: JSON types only, no NaN."""
-        return account(self)
+        return account(self.simulation, self.study, self.truth)
 
     @property
     def files(self) -> list[str]:
@@ -155,8 +129,8 @@ def _checked_travel(simulation: Simulation) -> F64:
 def _readings(
     simulation: Simulation,
     touching: Touching,
-    probe: NDArray[np.int64],
-    feature: NDArray[np.int64],
+    probe: I64,
+    feature: I64,
     standings: Standings,
     rng: np.random.Generator,
 ) -> Readings:

@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
-from ulna.study.data import Artefact, FitOptions
-
-F64 = NDArray[np.float64]
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import Artefact
+from ulna.ground.arrays import F64
+from ulna.study.data import FitOptions
 
 
 @dataclass(frozen=True)

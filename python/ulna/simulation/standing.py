@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.arm.effects.effects import REFERENCE_C
+from ulna.ground.arrays import F64, I64, Bool, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import turns
 from ulna.simulation.spec import Simulation, Touching
 from ulna.simulation.touches import Touches
-
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Progress = Callable[[str, int, int], None]
 
 #: rounds of drawing places, one after the other, that find none before it is said that there are too few
 BARREN = 20
@@ -154,7 +149,7 @@ def _beyond_reach(simulation: Simulation, touching: Touching, touches: Touches, 
     )
 
 
-def _select(standings: Standings, places: NDArray[np.int64]) -> Standings:
+def _select(standings: Standings, places: I64) -> Standings:
     temperature_c = None if standings.temperature_c is None else standings.temperature_c[places]
     return Standings(
         standings.origin_mm[places],

@@ -8,14 +8,16 @@ from typing import Any
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
-from ulna.arm.file import arm_toml, toml_key, toml_value
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.file import arm_toml
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.formats.toml_text import toml_key, toml_value
+from ulna.ground.arrays import F64
 from ulna.simulation.account import account_json
-from ulna.study.data import Artefact, FitOptions, Noise, Readings, Study
-
-F64 = NDArray[np.float64]
+from ulna.study.data import FitOptions, Noise
+from ulna.study.study import Study
 
 #: keys of [fit] that are said as they are, where they are not as usual
 FIT_KEYS = ("hold", "free", "loss", "start", "extras", "harmonics", "judge_extras")

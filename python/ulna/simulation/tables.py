@@ -7,29 +7,19 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.effects.effects import Extra
+from ulna.arm.stated import AmountEach, PositiveEach, TravelTable, VolumeTable, each_kind
 from ulna.artefacts.kinds import BarTable, LengthTable, PlaneTable, PointsTable, SeatTable, SphereTable
 from ulna.formats.models import Strict
+from ulna.formats.numbers import Amount, Positive
 from ulna.formats.units import Units
 from ulna.study.data import Loss
 
-Positive = Annotated[float, Field(gt=0)]
-Amount = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1, le=10_000_000)]
 
 
-def _each_kind(value: Any) -> str:
-    return "<each>" if isinstance(value, list) else "<all>"
-
-
-AmountEach = Annotated[
-    Annotated[Amount, Tag("<all>")] | Annotated[list[Amount], Tag("<each>")], Discriminator(_each_kind)
-]
-PositiveEach = Annotated[
-    Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_each_kind)
-]
 Probes = Annotated[
     Annotated[str, Tag("<all>")] | Annotated[Annotated[list[str], Field(min_length=1)], Tag("<each>")],
-    Discriminator(_each_kind),
+    Discriminator(each_kind),
 ]
 
 
@@ -116,13 +106,6 @@ class NoiseTable(Strict):
     """Whether encoders read whole counts, where counts_per_turn is known of all."""
 
 
-class TravelTable(Strict):
-    """How far joints turn, where the arm file does not say it or they shall turn less."""
-
-    limits: Annotated[list[Annotated[list[float], Field(min_length=2, max_length=2)]], Field(min_length=1)]
-    """Lowest and highest encoder angle, one pair for all joints or one per joint."""
-
-
 class TemperatureTable(Strict):
     """Of the arm, °C, drawn for each placement; the true arm needs expansion."""
 
@@ -138,13 +121,6 @@ class MissedTable(Strict):
     """Of all touches."""
     size: Positive
     """How far off the ball is."""
-
-
-class VolumeTable(Strict):
-    """The box, in the base frame, in which artefacts are touched."""
-
-    low: Annotated[list[float], Field(min_length=3, max_length=3)]
-    high: Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
 class SimulatedFit(Strict):

@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES, Artefact
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.spec import Touching
 from ulna.study.assembly import check_balls
-from ulna.study.data import SURFACES, Artefact
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 #: touches of surfaces are spread by the golden ratio and by its relative in two dimensions, so that none are near
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES, Artefact
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import SURFACES, Artefact, Noise, Readings, Study
+from ulna.study.data import Noise, StudyData
 from ulna.study.parameters import hold_mask, priors, start_arm
 
 if TYPE_CHECKING:
-    from ulna import _core
-
-F64 = NDArray[np.float64]
+    import ulna._core as _core
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class Assembled:
     names: list[str]
     """Of the parameters: the arm's, then the dimensions of artefacts that are fitted."""
     units: list[str]
-    hold: NDArray[np.bool_]
+    hold: Bool
     """(parameters,) true where not fitted."""
 
 
-def assemble(study: Study, hold: Callable[[list[str]], NDArray[np.bool_]] | None = None) -> Assembled:
+def assemble(study: StudyData, hold: Callable[[list[str]], Bool] | None = None) -> Assembled:
     """The study in the core. hold: what is held, by names, in place of what the study says. Raises UlnaInputError."""
-    from ulna import _core
+    import ulna._core as _core
 
     arm = start_arm(study)
     noise = study.noise or Noise()
@@ -54,7 +54,7 @@ def assemble(study: Study, hold: Callable[[list[str]], NDArray[np.bool_]] | None
     return Assembled(problem, arm, names, units, mask)
 
 
-def warmth_k(study: Study, arm: Arm, group: Readings) -> F64 | None:
+def warmth_k(study: StudyData, arm: Arm, group: Readings) -> F64 | None:
     """(N,) or (N, n): temperatures above 20 °C where the arm's links grow with them. Raises UlnaInputError where one is
     missing."""
     try:
@@ -68,7 +68,7 @@ def warmth_k(study: Study, arm: Arm, group: Readings) -> F64 | None:
         ) from None
 
 
-def _add_lengths(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
+def _add_lengths(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
     assert group.p_rad is not None
     assert group.length_mm is not None
     problem.add_lengths(
@@ -83,7 +83,7 @@ def _add_lengths(problem: _core.Problem, study: Study, arm: Arm, group: Readings
     )
 
 
-def _add_points(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
+def _add_points(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
     artefact = group.artefact
     each = artefact.feature_u_mm
     problem.add_points(
@@ -102,7 +102,7 @@ def _add_points(problem: _core.Problem, study: Study, arm: Arm, group: Readings)
     )
 
 
-def _add_sphere(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
+def _add_sphere(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
     artefact = group.artefact
     assert artefact.diameter_mm is not None
     problem.add_sphere(
@@ -119,7 +119,7 @@ def _add_sphere(problem: _core.Problem, study: Study, arm: Arm, group: Readings)
     )
 
 
-def _add_plane(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
+def _add_plane(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
     problem.add_plane(
         balls_mm(study, arm, group),
         np.ascontiguousarray(group.q_rad),
@@ -132,7 +132,7 @@ def _add_plane(problem: _core.Problem, study: Study, arm: Arm, group: Readings) 
 _ADD: dict[str, Callable[..., Any]] = {"length": _add_lengths, "sphere": _add_sphere, "plane": _add_plane}
 
 
-def balls_mm(study: Study, arm: Arm, group: Readings) -> F64:
+def balls_mm(study: StudyData, arm: Arm, group: Readings) -> F64:
     """(P,) diameters of the probes' balls, 0 where not needed.
 
     Raises UlnaInputError where one is needed and not known, or too large for a hollow.

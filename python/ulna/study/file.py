@@ -4,122 +4,36 @@ from __future__ import annotations
 
 import warnings as python_warnings
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Any, TypeVar, get_args
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag
 
-from ulna.arm.effects.effects import Extra
-from ulna.arm.file import load_arm_and_hash
-from ulna.arm.model import Arm
-from ulna.artefacts.kinds import ArtefactTable, check_kinds, make_artefact
-from ulna.formats.models import Strict, fill
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import check_kinds, make_artefact
+from ulna.artefacts.readings import InputFile, Readings
+from ulna.formats.models import fill
 from ulna.formats.rows import Rows
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
-from ulna.study.data import Artefact, FitOptions, InputFile, Loss, Method, Noise, Prior, Readings, Study
+from ulna.study.data import FitOptions, Noise, Prior, StudyData
 from ulna.study.options import with_options
 from ulna.study.parameters import check_patterns
 from ulna.study.readings.checks import check_bar_ends, check_limits, check_repeats
-from ulna.study.readings.columns import ReadingsEntry, Source
+from ulna.study.readings.columns import Source
 from ulna.study.readings.merge import merge
 from ulna.study.readings.own_points import has_own_points
 from ulna.study.readings.readings import read_readings
+from ulna.study.tables import FitTable, NoiseTable, PriorTable, StudyFile
 
 WHAT = 'a study file (TOML, format = "ulna-study/1")'
 
-Positive = Annotated[float, Field(gt=0)]
+
+AnyStudy = TypeVar("AnyStudy", bound=StudyData)
 
 
-def _noise_kind(encoder: Any) -> str:
-    return "<each>" if isinstance(encoder, list) else "<all>"
-
-
-class NoiseTable(Strict):
-    """Standard deviations of the readings."""
-
-    encoder: (
-        Annotated[
-            Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_noise_kind)
-        ]
-        | None
-    ) = None
-    """In the study's angle unit; one number, or one per joint."""
-    seat: Positive | None = None
-    """Of a touch, per coordinate, in the study's length unit."""
-
-
-class PriorTable(Strict):
-    """What is known of parameters before any reading."""
-
-    value: float | None = None
-    """The arm file's, or the artefact's, where it is not given."""
-    u: Positive
-    """Standard deviation."""
-
-
-def _prior_kind(prior: Any) -> str:
-    return "<table>" if isinstance(prior, dict | PriorTable) else "<deviation>"
-
-
-PriorValue = Annotated[
-    Annotated[Positive, Tag("<deviation>")] | Annotated[PriorTable, Tag("<table>")], Discriminator(_prior_kind)
-]
-
-
-class FitTable(Strict):
-    """What is fitted, and how."""
-
-    hold: list[str] = Field(default_factory=list)
-    """Not fitted: shell-style patterns over parameter names."""
-    free: list[str] = Field(default_factory=lambda: ["*"])
-    """What may be fitted; hold wins."""
-    loss: Loss = "none"
-    """How residuals count that are far off: by their squares (none), or less."""
-    start: Literal["given", "search"] = "given"
-    """"search": the zero offsets are not known, find them."""
-    extras: list[Extra] = Field(default_factory=list)
-    """Blocks of the model beyond geometry; each is judged by readings left out."""
-    harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
-    """Orders of the encoders' harmonics, where extras ask for them."""
-    prior: dict[str, PriorValue] = Field(default_factory=dict)
-    """Pattern of parameter names = standard deviation around the arm file's value, or { value, u }, in the study's
-    units."""
-    judge_extras: bool = True
-    """Whether extras are judged by cross-validation; false saves its time."""
-    method: Method = "lm"
-    """"annealing" or "evolution": first a search of a box around the start without derivatives."""
-    budget: Annotated[int, Field(ge=100, le=1_000_000_000)] = 100_000
-    """Most evaluations of the sum of squares in that search."""
-    box_length: Positive | None = None
-    """Half the width of the box for lengths (default 100 mm)."""
-    box_angle: Positive | None = None
-    """For twists (default 0.2 rad)."""
-    box_offset: Positive | None = None
-    """For zero offsets (default 1 rad; with start "search" the whole turn)."""
-    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
-    max_iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 200
-    known_length: Positive | None = None
-    """How well lengths are known before any reading (default 1 mm); worse-determined parameters are called weak."""
-    known_angle: Positive | None = None
-    """The same for angles (default 0.01 rad)."""
-
-
-class StudyFile(Strict):
-    """What to fit to what: `ulna-study/1`."""
-
-    format: Literal["ulna-study/1"]
-    arm: str
-    """Path of the arm file, relative to the study file."""
-    units: Units
-    readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
-    artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
-    noise: NoiseTable | None = None
-    fit: FitTable = FitTable()
-
-
-def load_study(path: Path, rows: Rows = "fit") -> Study:
+def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     """Read a study and all that it names. Raises UlnaInputError for the first thing that cannot be used.
 
     rows: of files with the key `split` those to fit, those to check, or both; a file without it is there to fit.
@@ -130,7 +44,7 @@ def load_study(path: Path, rows: Rows = "fit") -> Study:
     file = fill(StudyFile, document, path)
     split = _check_rows(file, path, rows)
     arm_path = path.parent / file.arm
-    arm, arm_digest = load_arm_and_hash(arm_path)
+    arm, arm_digest = Arm.load_and_hash(arm_path)
     fit = _fit(file.fit, file.units)
     noise = noise_of_table(file.noise, file.units, arm, path)
     remarks: list[str] = []
@@ -141,7 +55,7 @@ def load_study(path: Path, rows: Rows = "fit") -> Study:
         if features_file is not None:
             files.append(features_file)
     readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
-    study = Study(path, arm, readings, noise, fit, files, remarks, rows if split else None)
+    study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
     with_options(study)  # what cannot be asked is told now, not after the work
     check_patterns(study)
     for remark in remarks:

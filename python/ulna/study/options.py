@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from ulna.arm.effects.effects import EXTRAS
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.data import FitOptions, Loss, Method, Study
+from ulna.study.data import FitOptions, Loss, Method, StudyData
 
 #: of whole numbers: lowest and highest
 LIMITS = {"seed": (0, 2**63 - 1), "max_iterations": (0, 1_000_000), "budget": (100, 1_000_000_000)}
 
 
-def with_options(study: Study, **overrides: Any) -> Study:
+AnyStudy = TypeVar("AnyStudy", bound=StudyData)
+
+
+def with_options(study: AnyStudy, **overrides: Any) -> AnyStudy:
     """The study with some fields of its `fit` replaced. Raises UlnaInputError for a name or a value that is none."""
     known = [field.name for field in dataclasses.fields(FitOptions)]
     for name in overrides:

@@ -7,21 +7,19 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import extra_of, with_extras
-from ulna.arm.model import Arm
+from ulna.ground.arrays import Bool
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.data import Study
-
-Bool = NDArray[np.bool_]
+from ulna.study.data import StudyData
 
 HARMONICS_U_RAD = 5e-4
 """The prior of every amplitude of an encoder's harmonics where the study gives none: over a short travel they would
 otherwise imitate zero offsets, and each other. Ten times what a good encoder shows, and what robots show."""
 
 
-def start_arm(study: Study) -> Arm:
+def start_arm(study: StudyData) -> Arm:
     """The study's arm with zero of the blocks that are asked for beyond what it has. Raises UlnaInputError."""
     arm, extras = study.arm, study.fit.extras
     if "compliance" in extras and not any(joint.effects.mass_kg for joint in arm.joints):
@@ -36,7 +34,7 @@ def start_arm(study: Study) -> Arm:
     return replace(arm, joints=tuple(joints))
 
 
-def hold_mask(study: Study, names: Sequence[str]) -> Bool:
+def hold_mask(study: StudyData, names: Sequence[str]) -> Bool:
     """(parameters,) true where not fitted: all but `free`, and `hold`; and blocks of the arm that `extras` leaves out.
 
     names: of the problem's parameters. Raises UlnaInputError for a pattern that matches none of them.
@@ -50,7 +48,7 @@ def hold_mask(study: Study, names: Sequence[str]) -> Bool:
     return hold
 
 
-def matching(study: Study, pattern: str, names: Sequence[str], key: str) -> Bool:
+def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> Bool:
     """(parameters,) true where the name matches. Raises UlnaInputError where none does."""
     hits = np.array([fnmatch.fnmatchcase(name, pattern) for name in names], dtype=bool)
     if not hits.any():
@@ -76,7 +74,7 @@ _OF_EXTRAS = {
 
 
 def priors(
-    study: Study, names: Sequence[str], units: Sequence[str], values: Sequence[float], hold: Bool
+    study: StudyData, names: Sequence[str], units: Sequence[str], values: Sequence[float], hold: Bool
 ) -> dict[int, tuple[float, float]]:
     """Parameter number → (value, standard deviation), of free parameters. Raises UlnaInputError for a vain pattern."""
     found: dict[int, tuple[float, float]] = {}
@@ -91,7 +89,7 @@ def priors(
     return found
 
 
-def check_patterns(study: Study) -> None:
+def check_patterns(study: StudyData) -> None:
     """Tell of a vain pattern before the work. Dimensions of artefacts are known only when readings are: such patterns
     are told then. Raises UlnaInputError."""
     names = start_arm(study).parameter_names

@@ -9,14 +9,15 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-import ulna
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.directions import worth_naming
-from ulna.arm.model import Arm, ParameterCovariance
 from ulna.calibration.recalibrations import recalibrated
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Study
+from ulna.ground.version import VERSION
+from ulna.study.study import Study
 from ulna.uncertainties.constrained import Constrained, Shares
 from ulna.uncertainties.first_order import first_order
 from ulna.uncertainties.gum import coverage_factor, effective_degrees_of_freedom
@@ -27,8 +28,6 @@ from ulna.uncertainties.task import Task, chi_squared_in_blocks, in_blocks
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
 
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 Sets = Callable[[int, int], F64]
 """(first, count) → (count, P) parameters of as many trials."""
 
@@ -98,7 +97,7 @@ class Assessment:
             "kind": self.kind,
             "probe": self.probe,
             "readings": self.readings,
-            "version": ulna.__version__,
+            "version": VERSION,
             "seed": self.seed,
             "most_trials": self.most_trials,
             "p": self.p,

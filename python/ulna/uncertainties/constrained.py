@@ -8,24 +8,19 @@ known. In statistics: approximate Bayesian computation by rejection; the spread 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.simulation.mover import Mover
 from ulna.uncertainties.performance import Figure, Performance
 from ulna.uncertainties.simulated_tests import SetUp, set_up
 from ulna.work.pieces import Threads, Workers
-
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Progress = Callable[[str, int, int], None]
 
 BLOCK = 1000
 """Arms drawn together: block k draws from (seed, 61, k) and is tested in set-up k modulo SET_UPS."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
 from ulna.arm.directions import DRAWN, steps, unit_of
-from ulna.arm.model import Arm
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.uncertainties.gum import propagate
 from ulna.uncertainties.task import Task
-
-F64 = NDArray[np.float64]
 
 NOTHING_MM = 1e-3
 """A length of no more is none: its ends are nearer than the steps of its derivatives."""

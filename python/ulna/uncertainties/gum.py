@@ -9,10 +9,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri, stdtrit
 
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 STEP = 1e-3
 """Step of `numerical_jacobian` as a fraction of u. The error of central differences falls with its square: where y

@@ -8,20 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.arm.arm import Arm
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import noise_of_result, seat_of_result
-from ulna.arm.file import arm_of_result
-from ulna.arm.model import Arm, ParameterCovariance
 from ulna.formats.toml import check_format, read_json
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import travel_or_limits
 from ulna.study.data import Noise
-from ulna.uncertainties.constrained import Constrained, Progress
+from ulna.uncertainties.constrained import Constrained
 from ulna.uncertainties.performance_file import read_performance
 from ulna.work.pieces import Workers
-
-F64 = NDArray[np.float64]
 
 FIRST = 5000
 """Arms that agree from which a covariance is formed, for the first order."""
@@ -68,7 +66,7 @@ def known_of_result(result: Path) -> Known:
     result = result / "result.json" if result.is_dir() else result
     document, _ = read_json(result, WHAT)
     check_format(document, result, "ulna-result")
-    arm = arm_of_result(document, result)
+    arm = Arm.of_result(document, result)
     made = document.get("provenance", {})
     return Known(
         arm=arm,

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ulna.arm.model import Arm
-
-F64 = NDArray[np.float64]
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64
 
 
 def left_out(

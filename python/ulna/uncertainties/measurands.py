@@ -11,13 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-
-F64 = NDArray[np.float64]
 
 MOST_READINGS = 1000
 """Of one measurement: what a plane or a ball is touched at, not a scan."""
@@ -87,7 +85,7 @@ class Touched:
     """A measurand and which pose is at which of its features."""
 
     kind: str
-    feature: NDArray[np.int64]
+    feature: I64
     """(N,) index into the measurand's features."""
 
     @property

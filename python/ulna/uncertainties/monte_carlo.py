@@ -10,13 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 
-F64 = NDArray[np.float64]
 Draw = Callable[[int, int], F64]
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)

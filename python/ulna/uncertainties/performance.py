@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
+from ulna.ground.arrays import F64
 
-F64 = NDArray[np.float64]
 Figure = Literal["largest", "two_s", "two_sigma", "half_range", "form", "size"]
 
 

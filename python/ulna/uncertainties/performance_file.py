@@ -7,20 +7,17 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.stated import PositiveEach, TravelTable, encoder_of, travel_of
 from ulna.formats.models import Strict, check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.simulation.file import encoder_of, travel_of
-from ulna.simulation.tables import PositiveEach, TravelTable
 from ulna.study.readings.checks import named_probe
 from ulna.uncertainties.performance import Figure, LengthTest, Performance, PointTest, SphereTest, Test
-
-F64 = NDArray[np.float64]
 
 WHAT = 'a performance file (TOML, format = "ulna-performance/1")'
 

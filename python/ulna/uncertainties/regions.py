@@ -8,11 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtri
 
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
+from ulna.ground.arrays import F64, Bool
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
@@ -21,8 +21,6 @@ from ulna.uncertainties.performance import Figure, LengthTest, Performance, Poin
 from ulna.verification.figures.asme_b89_4_22 import single_point, volumetric
 from ulna.verification.figures.faro import half_ranges
 from ulna.verification.figures.iso_10360_12 import probing_of
-
-F64 = NDArray[np.float64]
 
 NEAR = 0.1
 """A seat's distance from the base, in parts of the reach, is as asked to within this."""

@@ -7,12 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64
 from ulna.uncertainties.measurands import Touched
-
-F64 = NDArray[np.float64]
 
 BLOCK = 1000
 """Trials that share one generator: trial k draws from (seed, k // BLOCK), so the cut does not matter."""

@@ -7,24 +7,23 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.models import Strict, fill
 from ulna.formats.table import read_header, read_table
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 from ulna.study.data import Noise
-from ulna.study.file import NoiseTable, noise_of_table
+from ulna.study.file import noise_of_table
 from ulna.study.readings.checks import check_scale
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 from ulna.study.readings.readings import angle_factors, angles
-
-F64 = NDArray[np.float64]
+from ulna.study.tables import NoiseTable
 
 WHAT = 'a task file (TOML, format = "ulna-task/1")'
 
@@ -81,7 +80,7 @@ class StatedTask:
     q_rad: F64
     """(N, n)"""
     probe: int
-    feature: NDArray[np.int64]
+    feature: I64
     """(N,) index into the features of the kind."""
     noise: Noise | None
 

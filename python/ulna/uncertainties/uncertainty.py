@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ulna.calibration.recalibrations import job_of
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.simulation.mover import travel_or_limits
-from ulna.study.data import Study
+from ulna.study.study import Study
 from ulna.uncertainties.assess import Assessment, assess
 from ulna.uncertainties.knowledge import Known, known_of_performance, known_of_result
 from ulna.uncertainties.measurands import MEASURANDS, Touched
@@ -22,8 +22,6 @@ from ulna.uncertainties.volume import VolumeMap, VolumeTask, volume_map
 from ulna.uncertainties.volume_file import read_volume
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
-
-Progress = Callable[[str, int, int], None]
 
 
 def uncertainty(

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri, stdtrit
 
+from ulna.arm.arm import Arm
 from ulna.arm.directions import DRAWN, steps, unit_of
 from ulna.arm.effects.effects import REFERENCE_C
-from ulna.arm.model import Arm
+from ulna.arm.stated import Box
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.measuring.tip_uncertainty import MOVES_MM
-from ulna.planning.spec import Box
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
 from ulna.uncertainties.assess import check_known
 from ulna.uncertainties.first_order import STEP_K
 from ulna.uncertainties.left_out import left_out
-
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Progress = Callable[[str, int, int], None]
 
 PARTS = (0.1, 0.33, 0.66, 1.0, 1.3)
 """Lengths that are asked for where none are, in parts of the reach."""

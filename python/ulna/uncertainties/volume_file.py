@@ -6,24 +6,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.stated import Box, TravelTable, VolumeTable, travel_of, volume_of
 from ulna.formats.models import Strict, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
-from ulna.planning.spec import Box
-from ulna.simulation.file import travel_of, volume_of
-from ulna.simulation.tables import TravelTable, VolumeTable
+from ulna.ground.arrays import F64
 from ulna.study.data import Noise
-from ulna.study.file import NoiseTable, noise_of_table
+from ulna.study.file import noise_of_table
 from ulna.study.readings.checks import named_probe
+from ulna.study.tables import NoiseTable
 from ulna.uncertainties.task_file import WHAT as WHAT_TASK
 from ulna.uncertainties.task_file import TemperatureTable, check_temperature
-
-F64 = NDArray[np.float64]
 
 WHAT = 'a volume file (TOML, format = "ulna-volume/1")'
 

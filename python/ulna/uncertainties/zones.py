@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
-import ulna
+from ulna.ground.arrays import F64
+from ulna.ground.version import VERSION
 from ulna.uncertainties.volume import Somewhere, VolumeMap
-
-F64 = NDArray[np.float64]
 
 FORMAT = "ulna-volume-result/1"
 ZONES = 5
@@ -97,7 +95,7 @@ def as_dict(found: VolumeMap) -> dict[str, Any]:
     """`volume.json`: JSON types only, no NaN."""
     return {
         "format": FORMAT,
-        "version": ulna.__version__,
+        "version": VERSION,
         "arm": found.arm,
         "probe": found.probe,
         "reach_mm": found.reach_mm,

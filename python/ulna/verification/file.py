@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ulna.arm.file import load_arm_and_hash
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
@@ -29,7 +28,7 @@ class StatedArm:
     @classmethod
     def load(cls, path: Path) -> StatedArm:
         """From an arm file or a result. Raises UlnaInputError."""
-        arm, sha256 = load_arm_and_hash(path)
+        arm, sha256 = Arm.load_and_hash(path)
         return cls(arm, path, sha256)
 
 

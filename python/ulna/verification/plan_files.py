@@ -10,7 +10,7 @@ from typing import Any
 
 import polars as pl
 
-from ulna.arm.file import toml_key, toml_value
+from ulna.formats.toml_text import toml_key, toml_value
 from ulna.verification.kinds.registry import figures_of
 from ulna.verification.profile import Profile, shipped
 from ulna.verification.steps import Step, lengths_of, needs_ball, steps_of

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import ReadingErrors, turns
@@ -19,9 +18,7 @@ from ulna.verification.plan_files import Filled
 from ulna.verification.profile import Profile
 from ulna.verification.steps import Step, lengths_of, steps_of
 
-F64 = NDArray[np.float64]
 Stated = dict[str, dict[str, Any]]
-Progress = Callable[[str, int, int], None]
 
 BALL_MM = 25.0
 U_MM = {"ball": 0.0003, "length": 0.001}

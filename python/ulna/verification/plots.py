@@ -9,6 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ulna.ground.arrays import F64
 from ulna.ground.style import BLUE, GREEN, GREY, STYLE, VERMILION, save_picture
 from ulna.verification.outcome import FigureResult, StateResult
 
@@ -67,7 +68,7 @@ def _panel(axes: Axes, found: FigureResult) -> None:
             axes.plot(length[own], error[own], linestyle="", marker=marker, markersize=4.5, color=colour, label=label)
 
 
-def _limits(axes: Axes, found: FigureResult, length: np.typing.NDArray[np.float64]) -> None:
+def _limits(axes: Axes, found: FigureResult, length: F64) -> None:
     """±MPE as lines, and about each the band of ±g in which nothing is decided."""
     order = np.argsort(length)
     margin = 0.04 * max(float(np.ptp(length)), 1.0)

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
+from ulna.ground.arrays import Progress
 from ulna.verification.plan_files import EMPTY, PLAN, TOUCHES, Filled, plan_toml, touches_table
 from ulna.verification.player import play
 from ulna.verification.profile import Profile, load_profile
-
-Progress = Callable[[str, int, int], None]
 
 FILES = (PLAN, TOUCHES)
 

@@ -8,30 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.units import Units
+from ulna.formats.unused import remark_strange
+from ulna.ground.arrays import F64, I64, Texts
 from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.checks import check_scale, remark_limits
-from ulna.study.readings.columns import (
-    ReadingsEntry,
-    Source,
-    check_columns,
-    codes,
-    each_row,
-    is_numeric,
-    known_columns,
-    remark_strange,
-)
+from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.verification.tables import VerifyReadings
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 WHAT = "touches (a table with the columns x, y, z, or q1, q2, …)"
 LABELS = ("test", "artefact", "position", "orientation", "repeat", "feature")
@@ -48,7 +37,7 @@ class Touches:
     sha256: str
     source: str
     """"encoders" or "xyz"."""
-    labels: dict[str, NDArray[np.object_]]
+    labels: dict[str, Texts]
     """Each of LABELS: (N,) str, "" where nothing is said."""
     p_mm: F64
     """(N, 3) centre of the probe's ball, or points of the surface where the ball's diameter is 0."""
@@ -196,7 +185,7 @@ def _labels_of(header: Header) -> list[str]:
     return [name for name in LABELS if name in header.columns]
 
 
-def _labels(frame: pl.DataFrame, entry: VerifyReadings, count: int) -> dict[str, NDArray[np.object_]]:
+def _labels(frame: pl.DataFrame, entry: VerifyReadings, count: int) -> dict[str, Texts]:
     """The file's own cells; of empty ones, and of columns that are missing, what the verify file says."""
     found = {}
     for name in LABELS:

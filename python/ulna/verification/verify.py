@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import ulna
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.version import VERSION
 from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
@@ -22,8 +22,6 @@ from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult,
 from ulna.verification.profile_tables import LimitTable, LimitValue
 from ulna.verification.tables import STATES
 from ulna.verification.touches import Touches, joined
-
-Progress = Callable[[str, int, int], None]
 
 FILE = "verification.json"
 TABLE = "values.csv"
@@ -81,7 +79,7 @@ class Verification:
             "states": [state.as_dict() for state in self.states],
             "provenance": {
                 "program": "ulna",
-                "version": ulna.__version__,
+                "version": VERSION,
                 "plan": {"path": str(plan.path), "sha256": plan.sha256},
                 "arms": [{"path": str(each.path), "sha256": each.sha256} for each in plan.arms],
                 "files": [

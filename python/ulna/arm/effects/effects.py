@@ -15,9 +15,8 @@ from fnmatch import fnmatchcase
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 Extra = Literal["encoder-harmonics", "link-expansion", "compliance"]
 

@@ -12,8 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.arm.frames.rigid import F64, inverse, pose, turn
-from ulna.arm.model import Joint, Probe
+from ulna.arm.frames.rigid import inverse, pose, turn
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.ground.arrays import F64
 
 #: axes closer to parallel than this (sine of their angle) become Hayati joints
 PARALLEL = 0.05

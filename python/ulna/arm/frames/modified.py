@@ -16,8 +16,10 @@ from typing import Literal
 import numpy as np
 
 from ulna.arm.frames.links import moved
-from ulna.arm.frames.rigid import F64, pose, turn
-from ulna.arm.model import Joint, Probe
+from ulna.arm.frames.rigid import pose, turn
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.ground.arrays import F64
 
 Convention = Literal["dh", "modified-dh"]
 

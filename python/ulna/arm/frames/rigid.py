@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 #: below this cosine of the pitch, roll and yaw turn about the same axis up to rounding
 _GIMBAL = 1e-15

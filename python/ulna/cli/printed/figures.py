@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from ulna.calibration.figures import NAMES, PlacementFigures
+from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
 from ulna.cli.printed.tables import table
-from ulna.documents.sections.placements import without_repeats
 from ulna.ground.digits import figure_mm
 
 MOST_ROWS = 24

@@ -9,8 +9,8 @@ from rich.console import RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from ulna.arm.arm import Arm
 from ulna.arm.directions import combination, sentence
-from ulna.arm.model import Arm
 from ulna.calibration.identify import Identification
 from ulna.cli.printed.tables import heading, listed
 from ulna.ground.digits import uncertainty

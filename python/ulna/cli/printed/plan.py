@@ -6,7 +6,7 @@ import numpy as np
 from rich.console import RenderableType
 
 from ulna.cli.printed.tables import table
-from ulna.planning.plan import Plan
+from ulna.planning.outcome import Plan
 
 _WHAT = {
     "D": "D (volume)",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 
-import ulna
 from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.laboratory.file import Laboratory
 from ulna.documents.laboratory.tables import (
@@ -15,6 +14,7 @@ from ulna.documents.laboratory.tables import (
     LaboratoryTable,
     PersonTable,
 )
+from ulna.ground.version import VERSION
 
 #: where PTB and the DKD explain the refTypes that begin with `basic_`
 _BASIC = "https://digilab.ptb.de/dkd/refType/vocab/"
@@ -30,7 +30,7 @@ def administrative_data(sheet: Sheet, root: Element, laboratory: Laboratory) -> 
     """All of it but the statements, which come last; the element is handed back for them."""
     file = laboratory.file
     data = sheet.dcc(root, "administrativeData")
-    software(sheet, sheet.dcc(data, "dccSoftware"), ulna.__version__)
+    software(sheet, sheet.dcc(data, "dccSoftware"), VERSION)
     _ref_types(sheet, data)
     _core_data(sheet, data, file.certificate, file.languages)
     _item(sheet, data, file.item)

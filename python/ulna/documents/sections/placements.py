@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ulna.calibration.figures import NAMES, PlacementFigures
+from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
 from ulna.documents.content import Content
 from ulna.documents.languages.text import NONE, Text, named
 from ulna.documents.languages.words import Words
@@ -45,11 +45,3 @@ def _worst(entries: Sequence[PlacementFigures], most: int) -> Sequence[Placement
 def _placement(entry: PlacementFigures, figures: Sequence[str]) -> list[Text]:
     values = [own(figure_mm(entry.figures[key])) if key in entry.figures else NONE for key in figures]
     return [named(entry.artefact), named(entry.placement), own(entry.readings), *values]
-
-
-def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
-    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
-    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
-    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
-        return [name for name in columns if name not in (mean, largest)]
-    return list(columns)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.documents.said import Said
 from ulna.documents.sources.source import Calibration, Source
 from ulna.formats.toml import check_format, read_json

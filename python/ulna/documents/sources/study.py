@@ -16,7 +16,7 @@ from ulna.documents.said import Said
 from ulna.documents.sources.source import Calibration, Source, take
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import InputWarning, UlnaInputError
-from ulna.study.data import Study
+from ulna.study.study import Study
 from ulna.uncertainties.uncertainty import check_same
 
 

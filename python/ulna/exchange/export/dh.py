@@ -13,10 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.frames.links import moved
 from ulna.arm.frames.modified import Convention, to_modified
 from ulna.arm.frames.rigid import pose, turn
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.formats.units import MM_PER, RAD_PER, AngleUnit, LengthUnit
 from ulna.ground.errors import UlnaInputError
 

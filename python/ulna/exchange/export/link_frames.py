@@ -15,11 +15,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.frames.links import link_at_zero, link_between
-from ulna.arm.frames.rigid import F64, apart, inverse, pose, smallest_turn, turn
-from ulna.arm.model import Arm, Joint
+from ulna.arm.frames.rigid import apart, inverse, pose, smallest_turn, turn
+from ulna.arm.joint import Joint
 from ulna.exchange.urdf.arm import frames_at_zero, seen_from
 from ulna.exchange.urdf.chain import Chain
+from ulna.ground.arrays import F64
 
 #: parallel axes nearer to each other than this have no direction from one to the other that a calibration would keep
 ONE_LINE_MM = 20.0

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ulna.arm.file import load_arm
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.formats.toml import read_json
 from ulna.ground.errors import UlnaInputError
 
@@ -22,7 +21,7 @@ class Source:
 
 def read_source(path: Path, what: str) -> Source:
     """An arm.toml or a result.json, to be written as `what` ("a URDF"). Raises UlnaInputError."""
-    arm = load_arm(path)
+    arm = Arm.load(path)
     for k, joint in enumerate(arm.joints, start=1):
         if joint.sign not in (1, -1):
             raise UlnaInputError(

@@ -13,14 +13,15 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ulna.arm.frames.rigid import F64, from_rpy, inverse, pose, to_rpy
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.frames.rigid import from_rpy, inverse, pose, to_rpy
 from ulna.exchange.export.link_frames import calibrated_frames
 from ulna.exchange.export.urdf import number, numbers
 from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import Chain, Step, chain_of
 from ulna.exchange.urdf.document import Document, read_document, start_tag
 from ulna.exchange.urdf.numbers import vector
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
 #: changes below this, m or rad, are rounding: what stands in the file stays

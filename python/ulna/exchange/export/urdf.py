@@ -8,9 +8,11 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.frames.links import link_at_zero
-from ulna.arm.frames.rigid import F64, inverse, pose, to_rpy, turn
-from ulna.arm.model import Arm, Joint
+from ulna.arm.frames.rigid import inverse, pose, to_rpy, turn
+from ulna.arm.joint import Joint
+from ulna.ground.arrays import F64
 
 BASE = "base_link"
 

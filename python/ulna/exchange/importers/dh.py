@@ -8,13 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.frames.links import hayati_where_parallel, link_at_zero, moved
 from ulna.arm.frames.modified import Convention, from_modified
-from ulna.arm.frames.rigid import F64, pose, turn
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.frames.rigid import pose, turn
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.exchange.importers.dh_table import TIP, Table, read_dh
 from ulna.exchange.importers.urdf import base_remark, commented
 from ulna.formats.output import refuse_inputs, write_file
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
 

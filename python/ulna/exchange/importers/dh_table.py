@@ -14,13 +14,12 @@ from pathlib import Path
 
 import polars as pl
 
-from ulna.arm.file import check_name
-from ulna.arm.model import Joint
+from ulna.arm.joint import MOST_RAD, Joint
 from ulna.formats.header import Header
+from ulna.formats.names import check_name
 from ulna.formats.table import read_header, read_table
 from ulna.formats.units import MM_PER, RAD_PER
 from ulna.ground.errors import UlnaInputError
-from ulna.study.readings.checks import MOST_RAD
 
 WHAT = "a table of Denavit–Hartenberg parameters (CSV with a header theta0 or offset, alpha, a, d)"
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import polars as pl
 
+from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.arm.model import Arm
 from ulna.formats.output import output_folder
 
 

@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.exchange.importers.folder import write_study_folder
 from ulna.exchange.importers.robots import ur10
 from ulna.formats.table import read_table
 from ulna.formats.tables.text import TextTable
 from ulna.formats.toml import read_bytes
+from ulna.ground.arrays import Bool
 from ulna.ground.errors import UlnaInputError
 
 JOINTS = (
@@ -96,7 +96,7 @@ def import_ipa_ur10(
     return int(fitted.sum()), int((~fitted).sum())
 
 
-def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -> NDArray[np.bool_]:
+def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -> Bool:
     """(count,) true for the rows to fit."""
     if spread and (fit is None or every != 1):
         raise UlnaInputError(

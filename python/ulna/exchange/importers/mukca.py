@@ -11,7 +11,7 @@ from pathlib import Path
 
 import polars as pl
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
 from ulna.exchange.importers.folder import write_study_folder
 from ulna.exchange.importers.robots import panda
 from ulna.exchange.urdf.arm import arm_from_chain

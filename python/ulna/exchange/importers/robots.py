@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+from ulna.arm.arm import Arm
 from ulna.arm.frames.modified import from_modified
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 
 _QUARTER = math.pi / 2
 

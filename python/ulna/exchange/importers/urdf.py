@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.arm.frames.rigid import F64, to_rpy
-from ulna.arm.model import Arm
+from ulna.arm.frames.rigid import to_rpy
 from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import Chain, read_chain
 from ulna.formats.output import refuse_inputs, write_file
+from ulna.ground.arrays import F64
 
 
 @dataclass(frozen=True)

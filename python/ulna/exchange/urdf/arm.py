@@ -6,12 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import NONE, Effects
 from ulna.arm.frames.links import PARALLEL, link_at_zero, link_between, without_rounding_mm
-from ulna.arm.frames.rigid import F64, inverse, pose, smallest_turn
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.frames.rigid import inverse, pose, smallest_turn
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.exchange.urdf.chain import Chain
 from ulna.exchange.urdf.masses import Mass
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
 #: a first axis nearer to upright than this is upright

@@ -11,10 +11,10 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ulna.arm.frames.rigid import F64
 from ulna.exchange.urdf.document import WHAT, Document, read_document
 from ulna.exchange.urdf.masses import NO_MASS, Mass, mass_behind, origin_of
 from ulna.exchange.urdf.numbers import MOST, number, vector
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
 
 TURNING = ("revolute", "continuous")

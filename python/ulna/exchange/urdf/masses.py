@@ -9,8 +9,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ulna.arm.frames.rigid import F64, from_rpy, pose
+from ulna.arm.frames.rigid import from_rpy, pose
 from ulna.exchange.urdf.numbers import number, vector
+from ulna.ground.arrays import F64
 
 
 @dataclass(frozen=True)

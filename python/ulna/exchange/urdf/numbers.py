@@ -8,9 +8,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ulna.arm.frames.rigid import F64
 from ulna.exchange.urdf.document import EXPAND
 from ulna.formats.cells import number_of
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
 #: no robot is larger (m) or heavier (kg), no joint stands farther round (rad)

@@ -23,6 +23,7 @@ from ulna.formats.tables.arrays import (
     no_such_part,
     unreadable,
 )
+from ulna.ground.arrays import Texts
 from ulna.ground.errors import UlnaInputError
 
 _MATLAB_NUMBERS = ("double", "single", "logical", "int", "uint")
@@ -148,7 +149,7 @@ def _of_matlab(path: Path, data: Any, name: str, kind: str) -> Variable:
     return Variable(name, shape, f"a MATLAB {kind}", lambda: None)
 
 
-def _chars(codes: NDArray[Any]) -> NDArray[np.object_]:
+def _chars(codes: NDArray[Any]) -> Texts:
     """(length, N) UTF-16 codes → (N,) texts."""
     return np.array([row.astype("<u2").tobytes().decode("utf-16-le") for row in codes.T], dtype=object)
 

@@ -23,6 +23,7 @@ from ulna.formats.tables.arrays import (
     unreadable,
 )
 from ulna.formats.tables.mat5 import DamagedError, Entry, Strange, Struct, entries, value
+from ulna.ground.arrays import Texts
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ def _rows(values: list[Any]) -> NDArray[Any]:
     return cells
 
 
-def texts_of(cells: NDArray[Any]) -> NDArray[np.object_]:
+def texts_of(cells: NDArray[Any]) -> Texts:
     """A cell array, or rows of text, as texts; a single number is one too. Raises NoTextError for anything else."""
     texts = np.empty(cells.size, dtype=object)
     for k, cell in enumerate(cells.reshape(-1)):

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.simulation.reading_errors import ReadingErrors, VirtualArm
 
 _QUARTER = math.pi / 2

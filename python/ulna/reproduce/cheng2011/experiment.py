@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna import _core
-from ulna.arm.model import Arm, Probe
+import ulna._core as _core
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
+from ulna.ground.arrays import F64, Progress
 from ulna.reproduce.cheng2011.arms import (
     BAR_MM,
     BENT_PROBE,
@@ -21,9 +21,6 @@ from ulna.reproduce.cheng2011.arms import (
     virtual,
 )
 from ulna.simulation.reading_errors import as_drawn
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 BARS = 101
 FRESH_BARS = 10

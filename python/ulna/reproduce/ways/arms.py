@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.arm.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, STRAIGHT_PROBE, platinum, virtual
 from ulna.simulation.reading_errors import ReadingErrors, VirtualArm
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.arm.model import Arm, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
 from ulna.reproduce.claims import Claim
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX, true_arm

@@ -10,9 +10,10 @@ import numpy as np
 from rich.console import RenderableType
 
 from ulna.formats.output import output_folder
+from ulna.ground.arrays import Progress
 from ulna.reproduce.claims import FORMAT
 from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, shimojima2002, wang2007, wang2010
-from ulna.reproduce.ways.outcome import Outcome, Progress, Way, outcomes_of
+from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import Trial, start_of
 from ulna.reproduce.ways.work import REPEATS, outcome_dicts, outcomes_table, write_json
 from ulna.simulation.reading_errors import VirtualArm

@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
 from ulna.simulation.reading_errors import VirtualArm
-from ulna.study.data import Artefact, Readings
-
-F64 = NDArray[np.float64]
 
 TOUCHES = 280
 
@@ -106,7 +105,7 @@ def _standing(truth: VirtualArm, artefact: Artefact, features_mm: F64, places: i
     return _touches(artefact, truth.touch(at_mm, seed, rng), feature, placement)
 
 
-def _touches(artefact: Artefact, q_rad: F64, feature: NDArray[np.int64], placement: NDArray[np.int64]) -> Readings:
+def _touches(artefact: Artefact, q_rad: F64, feature: I64, placement: I64) -> Readings:
     count = len(q_rad)
     none = np.zeros(count, np.int64)
     labels = placement.astype(str).astype(object)

@@ -8,19 +8,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-import ulna
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.readings import Readings
+from ulna.calibration.calibrate import calibrate as run_calibrate
 from ulna.calibration.estimators import search_box
+from ulna.calibration.result import Result
+from ulna.ground.arrays import F64
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
 from ulna.simulation.reading_errors import VirtualArm, as_drawn
 from ulna.study.assembly import assemble
-from ulna.study.data import FitOptions, Noise, Readings, Study
-
-F64 = NDArray[np.float64]
+from ulna.study.data import FitOptions, Noise
+from ulna.study.study import Study
 
 WRONG_RAD, WRONG_MM = 0.1, 2.0
 """How far off the drawing is that every calibration starts from: zero offsets, and lengths. Twists are right angles."""
@@ -43,7 +44,7 @@ class Trial:
     """As found."""
     seconds: float
     """Of the calibration alone."""
-    result: ulna.Result | None
+    result: Result | None
     """None where nothing but a search without derivatives was run, which says nothing of uncertainty."""
 
     @property
@@ -92,7 +93,7 @@ def calibrate(truth: VirtualArm, start: Arm, readings: Readings, **fit: Any) -> 
     """Calibrate by these readings."""
     study = study_of(start, readings, budget=BUDGET, **fit)
     began = time.perf_counter()
-    result = ulna.calibrate(study)
+    result = run_calibrate(study)
     return Trial(truth, start, readings, result.arm, time.perf_counter() - began, result)
 
 

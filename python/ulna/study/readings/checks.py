@@ -7,24 +7,18 @@ same two poses with two lengths, contradict each other: an error. So do two diff
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.arm.joint import MOST_RAD
+from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import InputFile, Readings
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-
-#: no arm's joint turns farther than this from its zero: two turns
-MOST_RAD = 4.0 * math.pi
 
 #: rows named in a remark
 SHOWN = 5

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import InputFile, Readings
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Artefact, InputFile, Readings
 from ulna.study.readings.own_points import has_own_points, joined_points
 
 

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
+from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.features import uncertainties
+from ulna.artefacts.readings import Readings
 from ulna.formats.header import Header
 from ulna.formats.units import Units
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import Artefact, Readings
 from ulna.study.readings.columns import Source
 
-I64 = NDArray[np.int64]
 Place = tuple[float, float, float]
 
 
@@ -67,7 +67,7 @@ def own_points(
 
 def _u_mm(
     frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, units: Units
-) -> NDArray[np.float64] | None:
+) -> F64 | None:
     """The column `u`, (N,) mm, where there is one."""
     if "u" not in frame.columns:
         return None
@@ -76,7 +76,7 @@ def _u_mm(
             f"{source.study}: key 'artefact.{artefact.name}.u': got {artefact.u_mm / units.mm:g}, but {header.path} "
             "has a column 'u' as well. Remove one of them."
         )
-    u_mm: NDArray[np.float64] = uncertainties(header, frame, row) * units.mm
+    u_mm: F64 = uncertainties(header, frame, row) * units.mm
     return u_mm
 
 

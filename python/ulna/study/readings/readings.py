@@ -9,20 +9,19 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import SURFACES, Artefact
+from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.rows import Rows, Selection
 from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.units import RAD_PER, Units
+from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-from ulna.study.data import SURFACES, Artefact, InputFile, Readings
 from ulna.study.readings.checks import check_ids, check_scale
 from ulna.study.readings.columns import Source, check_columns, codes, each_row, is_numeric, known_columns, remark_unused
 from ulna.study.readings.own_points import has_own_points, own_points
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 

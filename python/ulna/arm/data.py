@@ -8,116 +8,28 @@ What an arm does beyond its geometry is in `ulna.arm.effects.effects`.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.effects import effects
-from ulna.arm.effects.effects import NONE, REFERENCE_C, Effects
+from ulna.arm.effects.effects import REFERENCE_C, Effects
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError, nearest
 
 if TYPE_CHECKING:
-    from ulna import _core
-
-JointModel = Literal["dh", "hayati"]
+    import ulna._core as _core
 
 
 @dataclass(frozen=True)
-class Joint:
-    """One rotary joint and the link after it. The last joint has no link, unless the arm has a full last link."""
-
-    theta0_rad: float = 0.0
-    """Zero offset: ``turn = sign * encoder - theta0``."""
-    alpha_rad: float = 0.0
-    """Twist from this axis to the next, about the link."""
-    a_mm: float = 0.0
-    """Link length, along the common normal of this axis and the next."""
-    d_mm: float = 0.0
-    """Link offset along this axis; 0 for a Hayati joint."""
-    beta_rad: float = 0.0
-    """Hayati joints only: tilt of the next axis about y; 0 for a DH joint."""
-    sign: int = 1
-    """+1 where the encoder counts up with the turn (right-handed about the axis), else -1; 0: not known, find it."""
-    model: JointModel = "dh"
-    """"hayati" for an axis (nearly) parallel to the next, where ``d`` has no meaning."""
-    name: str | None = None
-    """What people call it; only for messages."""
-    limits_rad: tuple[float, float] | None = None
-    """Lowest and highest encoder angle; readings outside are warned about."""
-    counts_per_turn: float | None = None
-    """Encoder counts in one full turn; needed for readings in counts."""
-    effects: Effects = NONE
-    """What the joint does beyond its geometry."""
-
-
-@dataclass(frozen=True)
-class Probe:
-    """The centre of a probe's ball, in the frame that turns with the last joint."""
-
-    x_mm: float
-    y_mm: float
-    z_mm: float
-    ball_mm: float | None = None
-    """Diameter of the ball."""
-
-    @property
-    def tip_mm(self) -> NDArray[np.float64]:
-        """(3,) mm."""
-        return np.array([self.x_mm, self.y_mm, self.z_mm])
-
-    @property
-    def cylindrical(self) -> tuple[float, float, float]:
-        """``(theta0_rad, r_mm, h_mm)``: x = r cos theta0, y = -r sin theta0, z = h (Cheng 2011). r = 0: theta0 = 0."""
-        return (
-            math.atan2(-self.y_mm, self.x_mm) if self.x_mm or self.y_mm else 0.0,
-            math.hypot(self.x_mm, self.y_mm),
-            self.z_mm,
-        )
-
-    @classmethod
-    def from_cylindrical(cls, theta0_rad: float, r_mm: float, h_mm: float, ball_mm: float | None = None) -> Probe:
-        """From the literature's three numbers (Cheng 2011)."""
-        return cls(r_mm * math.cos(theta0_rad), -r_mm * math.sin(theta0_rad), h_mm, ball_mm)
-
-
-@dataclass(frozen=True)
-class ParameterCovariance:
-    """What a calibration says about its parameters."""
-
-    names: list[str]
-    """Parameters the matrix is of."""
-    matrix: NDArray[np.float64]
-    """(k, k), rad and mm."""
-    lost: list[dict[str, Any]]
-    """Directions that the data did not determine: ``{"combination": {name: weight}, "because", "remedy", …}``."""
-
-    def over(self, names: Sequence[str]) -> NDArray[np.float64]:
-        """(k, k) over these names, which contain its own; zero where it knows nothing: those parameters were held."""
-        whole = np.zeros((len(names), len(names)))
-        columns = [list(names).index(name) for name in self.names]
-        whole[np.ix_(columns, columns)] = self.matrix
-        return whole
-
-    def of(self, names: Sequence[str]) -> ParameterCovariance:
-        """That of some of the parameters alone."""
-        kept = [k for k, name in enumerate(self.names) if name in names]
-        lost = []
-        for direction in self.lost:
-            combination = {name: weight for name, weight in direction["combination"].items() if name in names}
-            if combination:
-                lost.append(direction | {"combination": combination})
-        return ParameterCovariance([self.names[k] for k in kept], self.matrix[np.ix_(kept, kept)], lost)
-
-
-@dataclass(frozen=True)
-class Arm:
-    """An articulated arm: joints from the base to the probe, and the probes it can carry. Immutable."""
+class ArmData:
+    """What an arm is, without its files: see `ulna.arm.arm.Arm`. Immutable."""
 
     name: str
     joints: tuple[Joint, ...]
@@ -131,19 +43,6 @@ class Arm:
     gravity: tuple[float, float, float] = (0.0, 0.0, -1.0)
     """Where gravity pulls, in the base frame; its length does not matter. For joints that give way."""
 
-    @classmethod
-    def load(cls, path: str | Path) -> Arm:
-        """Read an arm file (`ulna-arm/1`, TOML) or the arm of a result (`result.json`). Raises UlnaInputError."""
-        from ulna.arm.file import load_arm  # the door to the files stands here for the user; see docs
-
-        return load_arm(Path(path))
-
-    def save(self, path: str | Path, force: bool = False) -> None:
-        """Write an arm file in mm and rad. Raises UlnaInputError where the file exists and `force` is not given."""
-        from ulna.arm.file import save_arm
-
-        save_arm(self, Path(path), force=force)
-
     @property
     def n(self) -> int:
         """Number of joints (encoders)."""
@@ -156,9 +55,9 @@ class Arm:
     @cached_property
     def core(self) -> _core.Arm:
         """The same arm in the compiled core."""
-        from ulna import _core
+        import ulna._core as _core
 
-        def of(name: str) -> NDArray[np.float64]:
+        def of(name: str) -> F64:
             return np.array([getattr(joint, name) for joint in self.joints], dtype=np.float64)
 
         sign = of("sign")
@@ -191,17 +90,17 @@ class Arm:
         return self.core.parameter_units
 
     @property
-    def parameters(self) -> NDArray[np.float64]:
+    def parameters(self) -> F64:
         """(P,) values in the order of `parameter_names`."""
         return self.core.parameters
 
     @property
-    def signs(self) -> NDArray[np.float64]:
+    def signs(self) -> F64:
         """(n,) +1 or -1; +1 where not known."""
         return self.core.signs
 
     @property
-    def unknown_signs(self) -> NDArray[np.bool_]:
+    def unknown_signs(self) -> Bool:
         """(n,) true for joints of which nobody knows which way the encoder counts (sign 0)."""
         return np.array([joint.sign == 0 for joint in self.joints])
 
@@ -210,7 +109,7 @@ class Arm:
         """The blocks beyond geometry that the arm has."""
         return effects.extras_of(self._effects)
 
-    def with_parameters(self, parameters: ArrayLike) -> Arm:
+    def with_parameters(self, parameters: ArrayLike) -> Self:
         """The same arm with other numbers, (P,) in the order of `parameter_names`, and no uncertainty."""
         x = np.asarray(parameters, dtype=np.float64)
         expected = len(self.parameter_names)
@@ -244,7 +143,7 @@ class Arm:
             uncertainty=None,
         )
 
-    def with_signs(self, signs: ArrayLike) -> Arm:
+    def with_signs(self, signs: ArrayLike) -> Self:
         """The same arm with other signs, (n,) each +1 or -1. Its uncertainty is not carried over."""
         joints = [
             replace(joint, sign=int(sign)) for joint, sign in zip(self.joints, np.asarray(signs).tolist(), strict=True)
@@ -262,9 +161,7 @@ class Arm:
             raise UlnaInputError(f"arm '{self.name}' has no probe '{name}'.{nearest(name, names)}")
         return names.index(name)
 
-    def tip(
-        self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None
-    ) -> NDArray[np.float64]:
+    def tip(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None) -> F64:
         """Encoder angles (N, n) rad → tip positions (N, 3) mm in the base frame; (n,) → (3,).
 
         temperature_c: one number, (N,) or (N, n) per joint's link, °C. Raises UlnaInputError where the arm's links grow
@@ -274,9 +171,7 @@ class Arm:
         p_mm = self.core.tip(q, self.probe_index(probe), self.warmth_k(temperature_c, len(q)))
         return p_mm[0] if single else p_mm
 
-    def jacobian(
-        self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None
-    ) -> NDArray[np.float64]:
+    def jacobian(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None) -> F64:
         """(N, n) rad → (N, 3, parameters): ∂p/∂parameter in mm for a unit of each; (n,) → (3, parameters).
 
         temperature_c as for `tip`.
@@ -285,7 +180,7 @@ class Arm:
         jacobian = self.core.jacobian(q, self.probe_index(probe), self.warmth_k(temperature_c, len(q)))
         return jacobian[0] if single else jacobian
 
-    def warmth_k(self, temperature_c: ArrayLike | None, count: int) -> NDArray[np.float64] | None:
+    def warmth_k(self, temperature_c: ArrayLike | None, count: int) -> F64 | None:
         """(count,) or (count, n): how much warmer than 20 °C each of so many poses is; None where it does not matter.
 
         Raises UlnaInputError where the arm's links grow with the temperature and it is not given.
@@ -306,7 +201,7 @@ class Arm:
     def _effects(self) -> list[Effects]:
         return [joint.effects for joint in self.joints]
 
-    def _angles(self, q_rad: ArrayLike) -> tuple[NDArray[np.float64], bool]:
+    def _angles(self, q_rad: ArrayLike) -> tuple[F64, bool]:
         q = np.ascontiguousarray(q_rad, dtype=np.float64)
         single = q.ndim == 1
         q = q[np.newaxis] if single else q

@@ -1,0 +1,38 @@
+"""An artefact in memory: what the arm touches. Units are mm, always."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+ArtefactKind = Literal["bar", "seat", "points", "length", "sphere", "plane"]
+
+
+SURFACES = ("sphere", "plane")
+"""Kinds that are touched with the ball of the tip on their surface."""
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """A set of features with calibrated coordinates: what the arm touches."""
+
+    name: str
+    kind: ArtefactKind
+    features: dict[str, tuple[float, float, float]]
+    """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; others: none."""
+    length_mm: float | None = None
+    """bar only: distance between its seats."""
+    u_mm: float = 0.0
+    """Standard uncertainty: of the length of a bar or of length rows, of the diameter of a sphere; per coordinate of
+    each feature of points, where `feature_u_mm` does not say it of each."""
+    frame: Literal["free", "arm"] = "free"
+    """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
+    feature_u_mm: tuple[float, ...] | None = None
+    """points only: standard uncertainty of the coordinates of each feature, in the order of `features`."""
+    diameter_mm: float | None = None
+    """sphere only."""
+    inside: bool = False
+    """sphere only: a hollow, touched from within."""
+    fitted: bool = False
+    """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a sphere's
+    diameter of which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
