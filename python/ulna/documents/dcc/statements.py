@@ -49,7 +49,7 @@ def _uncertainty(sheet: Sheet, stated: StatedParameters) -> Texts:
     return sheet.own(
         "dcc.uncertainty",
         distribution=sheet.own("dcc.normal") if known else sheet.own("dcc.student", freedom=freedom),
-        noise=sheet.own("dcc.noise-stated" if known else "noise-estimated"),
+        noise=sheet.own("dcc.noise-stated" if known else "dcc.noise-estimated"),
         p=f"{100 * stated.p:g} %",
     )
 
