@@ -80,7 +80,15 @@ def document(result: Path, state: str = "as-left", points: bool = False) -> dict
         "environment": {"temperature": None, "fixture": None, "range": None},
         "artefacts": [],
         "states": [{"state": state, "verdict": "fail", "departures": ["test 'bi' was not measured."], "tests": tests}],
-        "provenance": {"arms": [] if points else [arm], "version": "0"},
+        "provenance": {
+            "program": "ulna",
+            "version": "0",
+            "plan": {"path": "plan.toml", "sha256": "0"},
+            "arms": [] if points else [arm],
+            "files": [],
+            "warnings": [],
+            "time": "2026-03-31T12:00:00+02:00",
+        },
     }
 
 

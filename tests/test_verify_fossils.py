@@ -56,6 +56,10 @@ def test_verification_1() -> None:
     document = json.loads((FOSSILS / "verification-1.json").read_text(encoding="utf-8"))
     schema = json.loads((FOLDER / "ulna-verification-1.json").read_text(encoding="utf-8"))
     assert _known(schema, schema, document, "") == []
+    assert loaded.provenance.files[0].rows == 42
+    assert loaded.environment.temperature is not None
+    again = loaded.model_dump(exclude_unset=True)
+    assert again == document, "one model reads and writes: nothing is lost, nothing is added"
     fresh = ulna.verify(FOSSILS / "verify-1.toml").as_dict()
     assert fresh.keys() == document.keys()
     for new, old in zip(fresh["states"][0]["tests"], document["states"][0]["tests"], strict=True):

@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 
 from ulna.documents.said import Said
 from ulna.documents.sources.source import Taken
+from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.result_file import TestedTable, VerificationFile
 
 F64 = NDArray[np.float64]
-
-LENGTHS = ("length", "volumetric")
-"""Kinds of tests whose first figure is of length errors."""
 
 
 @dataclass(frozen=True)

@@ -7,27 +7,12 @@ found also the arm that the calibration started from. A test of coordinates only
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from ulna.documents.said import Said
 from ulna.documents.sources.source import Calibration, Source
 from ulna.formats.toml import read_bytes, sha256
-from ulna.verification.result_file import VerificationFile, load_verification
-
-
-@dataclass(frozen=True)
-class UsedArm:
-    """An arm file that made points of readings."""
-
-    path: str
-    sha256: str
-
-
-def used_arms(file: VerificationFile) -> list[UsedArm]:
-    """Those that the file names; none for a test of coordinates."""
-    given = [each for each in file.provenance.get("arms", []) if isinstance(each, dict)]
-    return [UsedArm(str(each.get("path")), str(each.get("sha256"))) for each in given]
+from ulna.verification.result_file import SourceTable, VerificationFile, load_verification
 
 
 def calibrated_arms(calibration: Calibration) -> set[str]:
@@ -41,7 +26,7 @@ def arms_before(calibration: Calibration) -> set[str]:
     return {str(each["sha256"]) for each in calibration.result.provenance.get("files", [])}
 
 
-def strange_arms(used: Sequence[UsedArm], calibration: Calibration, as_found: bool) -> list[UsedArm]:
+def strange_arms(used: Sequence[SourceTable], calibration: Calibration, as_found: bool) -> list[SourceTable]:
     """Those that are not of this calibration; as found it may also be the arm that it started from."""
     allowed = calibrated_arms(calibration) | (arms_before(calibration) if as_found else set())
     return [each for each in used if each.sha256 not in allowed]
@@ -52,7 +37,7 @@ def _read(path: Path, _: Calibration) -> tuple[VerificationFile, str]:
 
 
 def _remarks(file: VerificationFile, path: Path, calibration: Calibration) -> list[Said]:
-    used = used_arms(file)
+    used = file.provenance.arms
     as_found = any(state.state == "as-found" for state in file.states)
     if not used and file.arm != calibration.result.arm.name:
         return [Said("verification.by-name", {"file": path.name, "arm": file.arm})]
