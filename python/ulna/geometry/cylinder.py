@@ -49,8 +49,8 @@ def fit_cylinder(points_mm: ArrayLike, what: str = "cylinder", offsets_mm: Array
     offsets_mm, a number or (..., N): how much farther out than the surface each point is, such as a ball's radius.
 
     Axes of all directions are tried, each with the algebraic circle of the points seen along it (Kåsa 1976);
-    Gauss–Newton on the distances ends the best of them. Raises UlnaInputError for fewer than five points, for points on a line, and
-    where no cylinder is nearest.
+    Gauss–Newton on the distances ends the best of them. Raises UlnaInputError for fewer than five points, points on a
+    line, and where no cylinder is nearest.
     """
     clouds = Clouds.of(points_mm, LEAST, what)
     clouds.need(2, "on a line", "A cylinder needs points around it: spread them.")
