@@ -11,7 +11,7 @@ import pytest
 from tests.small_study import BARS, PLATE, SmallStudy
 
 from ulna.artefacts.readings import Readings
-from ulna.formats.table import iter_tables, read_header, read_table
+from ulna.formats.table import read_header, read_table, stream
 from ulna.study.assembly import assemble
 
 TABLE = pl.read_csv(BARS.encode())
@@ -218,8 +218,11 @@ def test_pieces_are_the_whole(tmp_path: Path) -> None:
     (tmp_path / "spaces.csv").write_text((tmp_path / "a.csv").read_text().replace(",", " , "))
     for name in ("a.parquet", "a.csv", "spaces.csv"):
         header = read_header(tmp_path / name)
-        pieces = list(iter_tables(header, lambda column: column != "id", rows=64))
-        assert pl.concat(pieces).equals(frame), name
+        pieces = list(stream(header, ["q1", "q2"], ["id"], rows=64))
+        assert len(pieces) > 1, name
+        assert [piece.before for piece in pieces] == np.cumsum([0, *map(len, pieces[:-1])]).tolist(), name
+        assert np.array_equal(np.concatenate([piece.numbers for piece in pieces]), frame.select("q1", "q2")), name
+        assert pl.concat([piece.texts["id"] for piece in pieces]).to_list() == frame["id"].to_list(), name
         assert read_table(header, lambda column: column != "id").equals(frame), name
 
 
