@@ -8,26 +8,49 @@ from typing import Any, overload
 
 import polars as pl
 
+from ulna.formats.models import Open
 from ulna.ground.arrays import F64
 
 Figures = dict[str, float]
 """Name (of `NAMES`) → mm."""
 
-NAMES = (
-    "seat_scatter_mean_mm",
-    "seat_scatter_rms_mm",
-    "seat_scatter_max_mm",
-    "length_error_mean_mm",
-    "length_error_mean_abs_mm",
-    "length_error_rms_mm",
-    "length_error_max_abs_mm",
-    "coordinate_error_mean_mm",
-    "coordinate_error_rms_mm",
-    "coordinate_error_max_mm",
-    "form_mm",
-    "diameter_error_mm",
-)
-"""Every figure, in the order in which it is shown. A figure that the readings do not give is left out, never 0."""
+
+class FigureEntry(Open):
+    """What a metrologist reads, from the readings alone, in mm. A figure that the readings do not give is left out."""
+
+    seat_scatter_mean_mm: float | None = None
+    """Distance of each touch to the mean of its own seat's touches."""
+    seat_scatter_rms_mm: float | None = None
+    seat_scatter_max_mm: float | None = None
+    length_error_mean_mm: float | None = None
+    """Distance between the means of two seats minus the calibrated length; the signed mean."""
+    length_error_mean_abs_mm: float | None = None
+    length_error_rms_mm: float | None = None
+    length_error_max_abs_mm: float | None = None
+    coordinate_error_mean_mm: float | None = None
+    """Distance to the reference coordinates after the best rigid fit."""
+    coordinate_error_rms_mm: float | None = None
+    coordinate_error_max_mm: float | None = None
+    form_mm: float | None = None
+    """Spread of distances from the least-squares sphere or plane; the largest of all placements."""
+    diameter_error_mm: float | None = None
+    """Of the least-squares sphere, signed; the largest in size of all placements."""
+
+
+class _OnePlacement(Open):
+    artefact: str
+    placement: str
+    kind: str
+    readings: int
+    """Number of rows."""
+
+
+class PlacementEntry(FigureEntry, _OnePlacement):
+    """The figures of one artefact in one placement."""
+
+
+NAMES = tuple(FigureEntry.model_fields)
+"""Every figure, in the order in which it is shown."""
 
 
 @dataclass(frozen=True)
@@ -42,21 +65,21 @@ class PlacementFigures:
     figures: Figures
     """Only those of `NAMES` that these readings give, mm."""
 
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json` and `evaluation.json`, list `artefacts`."""
-        return {
-            "artefact": self.artefact,
-            "placement": self.placement,
-            "kind": self.kind,
-            "readings": self.readings,
-            **self.figures,
-        }
-
     @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> PlacementFigures:
-        """The inverse of `as_dict`."""
-        figures = {name: float(entry[name]) for name in NAMES if name in entry}
-        return cls(entry["artefact"], entry["placement"], entry["kind"], entry["readings"], figures)
+    def of_entry(cls, entry: PlacementEntry) -> PlacementFigures:
+        """As a file has it."""
+        return cls(entry.artefact, entry.placement, entry.kind, entry.readings, figures_of(entry))
+
+    def entry(self) -> PlacementEntry:
+        """As files have it."""
+        return PlacementEntry.model_construct(
+            None,
+            artefact=self.artefact,
+            placement=self.placement,
+            kind=self.kind,
+            readings=self.readings,
+            **self.figures,
+        )
 
 
 SCHEMA: dict[str, Any] = {
@@ -80,7 +103,7 @@ class Placements(Sequence[PlacementFigures]):
         """From one entry for each placement."""
         if isinstance(entries, Placements):
             return entries
-        return cls(pl.DataFrame([entry.as_dict() for entry in entries], schema=SCHEMA))
+        return cls(pl.DataFrame([_row(entry) for entry in entries], schema=SCHEMA))
 
     @classmethod
     def of_columns(
@@ -124,6 +147,17 @@ class Placements(Sequence[PlacementFigures]):
 
     def __repr__(self) -> str:
         return f"Placements({list(self[:3])!r}{', …' * (len(self) > 3)})"
+
+
+def figures_of(entry: FigureEntry) -> Figures:
+    """The figures that an entry of a file has."""
+    found = {name: getattr(entry, name) for name in NAMES}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _row(entry: PlacementFigures) -> dict[str, Any]:
+    row = {"artefact": entry.artefact, "placement": entry.placement, "kind": entry.kind, "readings": entry.readings}
+    return row | dict.fromkeys(NAMES) | entry.figures
 
 
 def _of_row(row: Mapping[str, Any]) -> PlacementFigures:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import typing
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -26,13 +27,30 @@ class Strict(BaseModel):
     )
 
 
+class Open(BaseModel):
+    """A table of a file that Ulna writes: later versions may add keys."""
+
+    model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, defer_build=True)
+
+
 Model = TypeVar("Model", bound=BaseModel)
 
 
 def fill(model: type[Model], document: Any, path: Path) -> Model:
     """A document as a typed model. Raises UlnaInputError with one message for the first thing that is wrong."""
+    return _filled(model, path, lambda: model.model_validate(document))
+
+
+def fill_json(model: type[Model], document: Any, path: Path) -> Model:
+    """The same of a model that has dataclasses in it: from Python's objects a strict model takes only their instances,
+    from JSON the tables that they are made of."""
+    text = json.dumps(document, ensure_ascii=False)
+    return _filled(model, path, lambda: model.model_validate_json(text))
+
+
+def _filled(model: type[Model], path: Path, validate: Callable[[], Model]) -> Model:
     try:
-        return model.model_validate(document)
+        return validate()
     except ValidationError as error:
         details = error.errors(include_url=False)
         # An unknown key explains a missing one: 'alhpa' first, then 'alpha'.

@@ -7,9 +7,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from ulna.calibration.result import Result
-from ulna.calibration.result_file import ResultFile
 from ulna.documents.certified.parameters import StatedParameters, stated_parameters
-from ulna.formats.models import fill
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 
@@ -30,9 +28,8 @@ def certified_result(path: Path) -> tuple[Result, StatedParameters, str]:
     """
     document, sha256 = read_json(path, "a result.json")
     check_format(document, path, "ulna-result")
-    fill(ResultFile, document | {"residuals": []}, path)  # those are many; they are checked where they are read
-    _check_overall(document, path)
     result = Result.load(path)
+    _check_overall(document, path)
     if not result.fit.converged:
         raise UlnaInputError(
             f"{path}: key 'fit.converged': the calibration did not converge ({result.fit.termination}); expected one "

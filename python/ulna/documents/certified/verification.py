@@ -10,11 +10,10 @@ from typing import Annotated, NoReturn
 from pydantic import Field
 
 from ulna.calibration.result import Result
-from ulna.calibration.result_file import Open
 from ulna.documents.certified.source import MOST
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.documents.laboratory.tables import ItemTable
-from ulna.formats.models import fill
+from ulna.formats.models import Open, fill
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.result_file import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
