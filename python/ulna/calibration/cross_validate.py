@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibration.figures import Figures, figures, over_groups
+from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.placements import Figures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
@@ -136,8 +137,8 @@ def _judge(study: Study, fold: Fold) -> GroupFigures:
         raise UlnaInputError(f"without {fold.name} ({fold.rows} readings left out): {error}") from None
     arm = start_arm.with_signs(fitted.arm.signs)
     of_arm = len(arm.parameter_names)
-    _, before = figures(arm.with_parameters(start.parameters[:of_arm]), test)
-    _, after = figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
+    before = overall_figures(arm.with_parameters(start.parameters[:of_arm]), test)
+    after = overall_figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
     return GroupFigures(
         group=fold.name,
         readings=fold.rows,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -14,7 +14,8 @@ import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
-from ulna.calibration.figures import Figures, PlacementFigures, figures
+from ulna.calibration.figures import figures
+from ulna.calibration.placements import Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.running import run_fit
@@ -32,7 +33,7 @@ class Evaluation:
     """What an arm makes of readings."""
 
     arm: Arm
-    artefacts: list[PlacementFigures]
+    artefacts: Sequence[PlacementFigures]
     """Per artefact and placement, from the readings alone."""
     overall: Figures
     """The same over all touches and lengths together."""

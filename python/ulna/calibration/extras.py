@@ -16,8 +16,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ulna.arm.effects.effects import PATTERNS
-from ulna.calibration.figures import Figures, figures
+from ulna.calibration.figures import overall_figures
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.placements import Figures
 from ulna.calibration.running import run_fit
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
@@ -133,7 +134,7 @@ def _left_out(study: Study, fold: Fold, told: _Told) -> Figures:
     fitted = run_fit(training)
     arm = assembled_arm.with_signs(fitted.arm.signs)
     told()
-    return figures(arm.with_parameters(fitted.parameters[: len(arm.parameter_names)]), test)[1]
+    return overall_figures(arm.with_parameters(fitted.parameters[: len(arm.parameter_names)]), test)
 
 
 def compared(

@@ -7,114 +7,90 @@ unit; `_mean_abs_` is the mean of magnitudes, `_mean_` of a length error is the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.kind import Errors, Tips
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.quantities import NAMES, QUANTITIES, Quantity
 from ulna.artefacts.readings import Readings
+from ulna.calibration.placements import Figures, Placements
+from ulna.ground.arrays import F64, I64
 from ulna.study.assembly import balls_mm, warmth_k
 from ulna.study.study import Study
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Figures = dict[str, float]
 
 LARGEST = [name for quantity in QUANTITIES if quantity.figures == ("largest",) for name in quantity.names()]
 """Figures that are one single error each."""
 
 
 @dataclass(frozen=True)
-class PlacementFigures:
-    """The figures of one artefact in one placement."""
+class _Group:
+    """The errors of one artefact's touches, by quantity, and its placements in the order in which they appear."""
 
-    artefact: str
-    placement: str
-    kind: str
-    readings: int
-    """Number of rows."""
-    figures: Figures
-    """Only those of `NAMES` that these readings give, mm."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json` and `evaluation.json`, list `artefacts`."""
-        return {
-            "artefact": self.artefact,
-            "placement": self.placement,
-            "kind": self.kind,
-            "readings": self.readings,
-            **self.figures,
-        }
-
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> PlacementFigures:
-        """The inverse of `as_dict`."""
-        figures = {name: float(entry[name]) for name in NAMES if name in entry}
-        return cls(entry["artefact"], entry["placement"], entry["kind"], entry["readings"], figures)
+    readings: Readings
+    placements: list[str]
+    code: I64
+    """(N,) number of each row's placement."""
+    errors: dict[str, Errors]
 
 
-def figures(arm: Arm, study: Study) -> tuple[list[PlacementFigures], Figures]:
+def figures(arm: Arm, study: Study) -> tuple[Placements, Figures]:
     """Per artefact and placement, and over all touches and lengths of all of them together.
 
     `arm` must carry the study's probes in the study's order. Errors: those of the core for wrong shapes.
     """
-    entries: list[PlacementFigures] = []
-    pooled: list[dict[str, Errors]] = []
-    for readings in study.readings:
-        # one probe for all is much quicker than one for each row
-        probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
-        warmth = warmth_k(study, arm, readings)
-        first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
-        second_mm = None
-        if readings.p_rad is not None:
-            second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
-        labels, code = placements(readings)
-        tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code)
-        errors = kind_of(readings.artefact).errors(readings, tips)
-        pooled.append(errors)
-        own = [quantity for quantity in QUANTITIES if quantity.name in errors]
-        per_quantity = {quantity.name: _by_placement(quantity, errors[quantity.name], len(labels)) for quantity in own}
-        counts = np.bincount(code, minlength=len(labels))
-        for number, label in enumerate(labels):
-            found = {name: value for quantity in per_quantity.values() for name, value in quantity[number].items()}
-            entries.append(
-                PlacementFigures(readings.artefact.name, label, readings.artefact.kind, int(counts[number]), found)
-            )
-    overall: Figures = {}
+    groups = [_group(arm, study, readings) for readings in study.readings]
+    return Placements.joined([_by_placement(group) for group in groups]), _over_all(groups)
+
+
+def overall_figures(arm: Arm, study: Study) -> Figures:
+    """The same over all of them together alone."""
+    return _over_all([_group(arm, study, readings) for readings in study.readings])
+
+
+def _group(arm: Arm, study: Study, readings: Readings) -> _Group:
+    # one probe for all is much quicker than one for each row
+    probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
+    warmth = warmth_k(study, arm, readings)
+    first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
+    second_mm = None
+    if readings.p_rad is not None:
+        second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
+    code, labels = readings.labels.as_they_appear()
+    tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code)
+    return _Group(readings, labels, code, kind_of(readings.artefact).errors(readings, tips))
+
+
+def _over_all(groups: Sequence[_Group]) -> Figures:
+    found: Figures = {}
     for quantity in QUANTITIES:
-        values = [errors[quantity.name].value_mm for errors in pooled if quantity.name in errors]
+        values = [group.errors[quantity.name].value_mm for group in groups if quantity.name in group.errors]
         if values:
-            overall.update(_summaries(quantity, np.concatenate(values), np.zeros(1, dtype=np.int64))[0])
-    return entries, overall
-
-
-def placements(readings: Readings) -> tuple[list[str], I64]:
-    """Labels of the placements in the order in which they appear, and (N,) the number of each row's placement."""
-    code = readings.placement_code
-    count = int(code.max()) + 1 if len(code) else 0
-    first = np.full(count, len(code), dtype=np.int64)
-    np.minimum.at(first, code, np.arange(len(code)))
-    return [str(readings.placement[row]) for row in first], code
-
-
-def _by_placement(quantity: Quantity, errors: Errors, count: int) -> list[Figures]:
-    """The figures of each placement; {} where it has none."""
-    found: list[Figures] = [{} for _ in range(count)]
-    order = np.argsort(errors.code, kind="stable")
-    present, start = np.unique(errors.code[order], return_index=True)
-    for number, summary in zip(present, _summaries(quantity, errors.value_mm[order], start), strict=True):
-        found[number] = summary
+            columns = _summaries(quantity, np.concatenate(values), np.zeros(1, dtype=np.int64))
+            found.update({name: float(column[0]) for name, column in columns.items()})
     return found
 
 
-def _summaries(quantity: Quantity, values_mm: F64, start: I64) -> list[Figures]:
-    """The figures of each run of values; a run begins at each of `start`."""
+def _by_placement(group: _Group) -> Placements:
+    columns: dict[str, F64] = {}
+    for quantity in QUANTITIES:
+        if quantity.name not in group.errors:
+            continue
+        errors = group.errors[quantity.name]
+        order = np.argsort(errors.code, kind="stable")
+        present, start = np.unique(errors.code[order], return_index=True)
+        for name, values in _summaries(quantity, errors.value_mm[order], start).items():
+            columns[name] = np.full(len(group.placements), np.nan)
+            columns[name][present] = values
+    artefact, counts = group.readings.artefact, np.bincount(group.code, minlength=len(group.placements))
+    return Placements.of_columns(artefact.name, artefact.kind, group.placements, counts, columns)
+
+
+def _summaries(quantity: Quantity, values_mm: F64, start: I64) -> dict[str, F64]:
+    """The figures of each run of values, by name; a run begins at each of `start`."""
     counts = np.diff(start, append=len(values_mm))
     size = np.abs(values_mm)
     signed = "mean_abs" in quantity.figures
@@ -135,8 +111,7 @@ def _summaries(quantity: Quantity, values_mm: F64, start: I64) -> list[Figures]:
         "max_abs": lambda: np.maximum.reduceat(size, start),
         "largest": largest,
     }
-    columns = [of[figure]() for figure in quantity.figures]
-    return [dict(zip(quantity.names(), row, strict=True)) for row in np.stack(columns, axis=1).tolist()]
+    return dict(zip(quantity.names(), (of[figure]() for figure in quantity.figures), strict=True))
 
 
 def over_groups(groups: Iterable[Figures]) -> Figures:
@@ -158,11 +133,3 @@ def over_groups(groups: Iterable[Figures]) -> Figures:
         else:
             found[name] = float(values.mean())
     return found
-
-
-def without_repeats(entries: Sequence[PlacementFigures], columns: Sequence[str]) -> list[str]:
-    """Where every placement has one length, its signed error says all: the columns without the sizes of it."""
-    mean, largest = "length_error_mean_abs_mm", "length_error_max_abs_mm"
-    if all(entry.figures.get(mean) == entry.figures.get(largest) for entry in entries):
-        return [name for name in columns if name not in (mean, largest)]
-    return list(columns)

@@ -17,9 +17,10 @@ from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
 from ulna.calibration.estimators import Searched
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import Figures, PlacementFigures, figures
+from ulna.calibration.figures import figures, overall_figures
 from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
+from ulna.calibration.placements import Figures, Placements
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter
@@ -53,7 +54,7 @@ class FittedStudy:
             "fit": self._summary,
             "residuals": lambda: self._residuals,
             "artefacts": lambda: self._after[0],
-            "before": lambda: figures(self.assembled.arm, self.study)[1],
+            "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: self._after[1],
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
             "outliers": lambda: outliers(self._residuals),
@@ -71,7 +72,7 @@ class FittedStudy:
         return Identification.from_core(self.core.identifiability)
 
     @cached_property
-    def _after(self) -> tuple[list[PlacementFigures], Figures]:
+    def _after(self) -> tuple[Placements, Figures]:
         return figures(self._arm, self.study)
 
     @cached_property

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.artefacts.kinds import kind_of
-from ulna.calibration.figures import placements
 from ulna.ground.errors import UlnaInputError
 from ulna.study.study import Study
 
@@ -60,7 +59,7 @@ def _by_placement(study: Study) -> list[Fold]:
     several = len(study.readings) > 1
     found = []
     for k, readings in enumerate(study.readings):
-        labels, code = placements(readings)
+        code, labels = readings.labels.as_they_appear()
         for number, label in enumerate(labels):
             masks = [np.zeros(len(other), dtype=bool) for other in study.readings]
             masks[k] = code == number
@@ -110,7 +109,7 @@ def _standings(study: Study) -> tuple[list[I64], int]:
     total = 0
     for readings in study.readings:
         placed = kind_of(readings.artefact).placed(readings.artefact)
-        code = placements(readings)[1] if placed else np.arange(len(readings))
+        code = readings.placement_code if placed else np.arange(len(readings))
         units.append(code + total)
         total += int(code.max()) + 1 if len(code) else 0
     return units, total

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,8 @@ from ulna.arm.covariance_file import covariance_of_result
 from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.probes import ProbeView, probe_views
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import Figures, PlacementFigures
 from ulna.calibration.identify import Identification
+from ulna.calibration.placements import Figures, PlacementFigures
 from ulna.calibration.residuals import from_json_rows, json_rows
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.output import output_folder
@@ -42,7 +43,7 @@ class Result(OnDemand):
     fit: FitSummary
     residuals: pl.DataFrame
     """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
-    artefacts: list[PlacementFigures]
+    artefacts: Sequence[PlacementFigures]
     """What a metrologist reads, of the calibrated arm, from the fitted readings alone."""
     before: Figures
     """The same over all placements, of the arm that the fit started from."""

@@ -8,7 +8,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from ulna.artefacts.quantities import NAMES
-from ulna.calibration.figures import PlacementFigures, without_repeats
+from ulna.calibration.placements import PlacementFigures, without_repeats
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import figure_mm
 

@@ -11,7 +11,8 @@ from ulna.calibration.result import Result
 from ulna.documents.certified.source import MOST
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.documents.laboratory.tables import ItemTable
-from ulna.formats.toml import read_bytes, sha256
+from ulna.documents.sources.source import Calibration
+from ulna.documents.sources.verification import calibrated_arms, strange_arms
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.result_file import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
 
@@ -19,12 +20,10 @@ from ulna.verification.result_file import FigureTable, StateTable, ValueTable, V
 _SLACK = 1e-9
 
 
-def stated_tests(
-    path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
-) -> list[StatedTests]:
+def stated_tests(path: Path, calibration: Calibration, item: ItemTable) -> list[StatedTests]:
     """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
     file, digest = load_verification(path)
-    _check_arm(file, path, result, result_path, result_sha256, item)
+    _check_arm(file, path, calibration, item)
     return [_state(file, state, path, digest) for state in file.states]
 
 
@@ -112,35 +111,22 @@ def _damaged(path: Path, name: str, what: str) -> NoReturn:
     raise UlnaInputError(f"{path}: figure {name}: {what}. The file was changed or damaged: verify again.")
 
 
-def _check_arm(
-    file: VerificationFile,
-    path: Path,
-    result: Result,
-    result_path: Path,
-    result_sha256: str,
-    item: ItemTable,
-) -> None:
-    """Tests by encoder readings name the arm files that made points of them: as left it must be this result, or the
-    arm.toml beside it; as found it may also be one that this calibration started from. Tests by coordinates name the
-    arm: its serial number must be in it. Raises UlnaInputError."""
+def _check_arm(file: VerificationFile, path: Path, calibration: Calibration, item: ItemTable) -> None:
+    """What a report remarks, a certificate refuses; and of tests as left one arm at least must be this calibration's.
+    Tests by coordinates name the arm: its serial number must be in it. Raises UlnaInputError."""
     made = file.provenance
     if not made.arms or any(each.points == "xyz" for each in made.files):
-        _check_name(file, path, result, item)
+        _check_name(file, path, calibration.result, item)
     if not made.arms:
         return
-    calibrated = {result_sha256}
-    beside = result_path.parent / "arm.toml"
-    if beside.is_file():
-        calibrated.add(sha256(read_bytes(beside, "an arm file")))
-    before = {str(entry["sha256"]) for entry in result.provenance["files"]}
     states = {state.state for state in file.states}
-    allowed = calibrated if states == {"as-left"} else calibrated | before
-    strange = [each for each in made.arms if each.sha256 not in allowed]
+    strange = strange_arms(made.arms, calibration, as_found="as-found" in states)
+    calibrated = calibrated_arms(calibration)
     if strange or ("as-left" in states and not any(each.sha256 in calibrated for each in made.arms)):
         raise UlnaInputError(
             f"{path}: key 'provenance.arms': values were computed with {(strange or made.arms)[0].path}, another arm "
-            f"than that of {result_path}; expected tests of this calibration, as found also of the arm that it started "
-            f"from. Verify again with: ulna verify {result_path} PLAN"
+            f"than that of {calibration.path}; expected tests of this calibration, as found also of the arm that it "
+            f"started from. Verify again with: ulna verify {calibration.path} PLAN"
         )
 
 
