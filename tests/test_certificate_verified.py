@@ -239,7 +239,9 @@ def test_a_state_without_figures(made: Made) -> None:
 def test_a_temperature_that_is_none(made: Made) -> None:
     document = verification()
     document["environment"]["temperature"] = {"value": "warm", "u": 0.1}
-    with pytest.raises(UlnaInputError, match=r"verification-0\.json: key 'environment\.temperature\.value': got 'warm'"):
+    with pytest.raises(
+        UlnaInputError, match=r"verification-0\.json: key 'environment\.temperature\.value': got 'warm'"
+    ):
         made(document)
 
 
