@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from benchmarks.readings import F64
+from benchmarks.lengths import F64
 from ulna.arm.arm import Arm
 
 PLATINUM = Path(__file__).resolve().parents[1] / "examples" / "platinum"

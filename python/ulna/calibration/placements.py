@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import polars as pl
+from pydantic import Field, create_model
 
+from ulna.artefacts.quantities import MEANINGS, NAMES
 from ulna.formats.models import Open
 from ulna.ground.arrays import F64
 
@@ -15,26 +17,17 @@ Figures = dict[str, float]
 """Name (of `NAMES`) → mm."""
 
 
-class FigureEntry(Open):
-    """What a metrologist reads, from the readings alone, in mm. A figure that the readings do not give is left out."""
+_MEANING = (
+    "What a metrologist reads, from the readings alone, in mm. A figure that the readings do not give is left out."
+)
 
-    seat_scatter_mean_mm: float | None = None
-    """Distance of each touch to the mean of its own seat's touches."""
-    seat_scatter_rms_mm: float | None = None
-    seat_scatter_max_mm: float | None = None
-    length_error_mean_mm: float | None = None
-    """Distance between the means of two seats minus the calibrated length; the signed mean."""
-    length_error_mean_abs_mm: float | None = None
-    length_error_rms_mm: float | None = None
-    length_error_max_abs_mm: float | None = None
-    coordinate_error_mean_mm: float | None = None
-    """Distance to the reference coordinates after the best rigid fit."""
-    coordinate_error_rms_mm: float | None = None
-    coordinate_error_max_mm: float | None = None
-    form_mm: float | None = None
-    """Spread of distances from the least-squares sphere or plane; the largest of all placements."""
-    diameter_error_mm: float | None = None
-    """Of the least-squares sphere, signed; the largest in size of all placements."""
+if TYPE_CHECKING:
+
+    class FigureEntry(Open):
+        """A key for each of `NAMES`."""
+else:
+    _FIELDS = {name: (float | None, Field(None, description=meaning)) for name, meaning in MEANINGS.items()}
+    FigureEntry = create_model("FigureEntry", __base__=Open, __doc__=_MEANING, **_FIELDS)
 
 
 class _OnePlacement(Open):
@@ -47,10 +40,6 @@ class _OnePlacement(Open):
 
 class PlacementEntry(FigureEntry, _OnePlacement):
     """The figures of one artefact in one placement."""
-
-
-NAMES = tuple(FigureEntry.model_fields)
-"""Every figure, in the order in which it is shown."""
 
 
 @dataclass(frozen=True)

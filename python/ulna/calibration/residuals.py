@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 import polars as pl
 
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import KINDS, kind_of
 from ulna.artefacts.readings import Readings
 from ulna.formats.models import Open
 from ulna.study.study import Study
@@ -54,8 +54,8 @@ SCHEMA: dict[str, Any] = {
 }
 """Of the table: the same columns, null where one does not apply."""
 
-_OWN = {"length": ("length_mm",), "surface": ("distance_mm",), "point": ("feature", "x_mm", "y_mm", "z_mm")}
-"""Columns that only one kind of reading has."""
+_OWN = sorted({name for kind in KINDS.values() for name in kind.residual_columns})
+"""Columns that only some kinds of readings have."""
 _CHUNK_ROWS = 100_000
 
 
@@ -82,13 +82,12 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
     }
     if counted is not None:
         columns["counted"] = counted
-    if artefact.kind == "length" or artefact.kind in SURFACES:
-        columns["length_mm" if artefact.kind == "length" else "distance_mm"] = residual_mm[:, 0]
-        columns["norm_mm"] = np.abs(residual_mm[:, 0])
-    else:
+    kind = kind_of(artefact)
+    if kind.named:
         columns["feature"] = _named(list(artefact.features), readings.feature)
-        columns |= {f"{axis}_mm": residual_mm[:, k] for k, axis in enumerate("xyz")}
-        columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
+    own = [name for name in kind.residual_columns if name != "feature"]
+    columns |= {name: residual_mm[:, k] for k, name in enumerate(own)}
+    columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
     missing = {name: pl.repeat(None, rows, dtype=dtype, eager=True) for name, dtype in SCHEMA.items()}
     return pl.DataFrame({name: columns.get(name, missing[name]) for name in SCHEMA}, schema=SCHEMA)
 
@@ -102,21 +101,10 @@ def json_rows(table: pl.DataFrame) -> Iterator[str]:
     between = ""
     for start in range(0, table.height, _CHUNK_ROWS):
         chunk = table.slice(start, _CHUNK_ROWS)
-        # runs of one kind, so that each object has just the keys of its kind
-        kind = (
-            pl.when(pl.col("length_mm").is_not_null())
-            .then(pl.lit("length"))
-            .when(pl.col("distance_mm").is_not_null())
-            .then(pl.lit("surface"))
-            .otherwise(pl.lit("point"))
-        )
-        for run in (
-            chunk.with_columns(kind.alias("_kind"))
-            .with_columns(pl.col("_kind").rle_id().alias("_run"))
-            .partition_by("_run", include_key=False)
-        ):
-            lacking = [name for other, names in _OWN.items() if other != run["_kind"][0] for name in names]
-            lacking += ["_kind", *(["counted"] if run["counted"].is_null().all() else [])]
+        # runs of rows that have the same columns, so that each object has just the keys that it needs
+        runs = pl.struct(pl.col(*_OWN).is_null()).rle_id().alias("_run")
+        for run in chunk.with_columns(runs).partition_by("_run", include_key=False):
+            lacking = [name for name in (*_OWN, "counted") if run[name].is_null().all()]
             yield between + run.drop(lacking).write_ndjson().rstrip("\n").replace("\n", ",\n")
             between = ",\n"
 

@@ -75,10 +75,10 @@ def report(
     """
     from ulna.cli import output
     from ulna.documents.gather import gather
-    from ulna.documents.languages.words import LANGUAGES
+    from ulna.documents.languages.languages import LANGUAGES
     from ulna.documents.write import targets, write_report
 
-    one_of("--language", language, LANGUAGES)
+    one_of("--language", language, tuple(LANGUAGES))
     formats = [name for name, asked in (("html", as_html), ("pdf", as_pdf)) if asked]
     wanted = targets(out, formats or ["html"], force)
     with output.progress_bar() as progress:

@@ -1,51 +1,66 @@
-"""The acceptance test of a report: read, and whether it is of this arm."""
+"""The acceptance test of a report: its length errors with limits, and what is said on the whole."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibration.result import Result
-from ulna.documents.content import Said, TestedLengths, Verification
-from ulna.formats.toml import read_bytes, sha256
-from ulna.verification.result_file import TestedTable, VerificationFile, load_verification
+from ulna.documents.said import Said
+from ulna.documents.sources.source import Taken
+from ulna.verification.kinds.registry import LENGTHS
+from ulna.verification.result_file import TestedTable, VerificationFile
 
 F64 = NDArray[np.float64]
 
-LENGTHS = ("length", "volumetric")
-"""Kinds of tests whose first figure is of length errors."""
+
+@dataclass(frozen=True)
+class TestedLengths:
+    """Length errors of an acceptance test over their lengths."""
+
+    __test__ = False  # no test of pytest's
+
+    state: str
+    """"as-found" or "as-left"."""
+    test: str
+    figure: str
+    length_mm: F64
+    """(N,) calibrated."""
+    error_mm: F64
+    limit_mm: F64
+    """(N,) MPE; NaN where none is stated."""
+    guard_mm: F64
+    """(N,) NaN where it is not known."""
+    verdict: list[str | None]
+    """"pass", "fail", "undecided" or None."""
+    a_mm: float | None
+    """MPE = a + L / b; None where none is stated."""
+    b: float | None
 
 
-def verification(path: Path, result: Result, result_path: Path, result_sha256: str) -> Verification:
-    """What `ulna verify` found, with its length errors as arrays. Raises UlnaInputError.
+@dataclass(frozen=True)
+class Verification:
+    """What `ulna verify` found."""
 
-    A test of encoder readings names the arm files that turned them into points: this result, or the arm.toml beside it;
-    as found also the arm that the calibration started from. A test of coordinates only names the arm. Where that is not
-    this one, it is said.
-    """
-    file, digest = load_verification(path)
-    remarks = []
-    arms = [each for each in file.provenance.get("arms", []) if isinstance(each, dict)]
-    if arms:
-        beside = result_path.parent / "arm.toml"
-        ours = {result_sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
-        before = {str(each["sha256"]) for each in result.provenance.get("files", [])}
-        known = ours | (before if any(state.state == "as-found" for state in file.states) else set())
-        for each in arms:
-            if each.get("sha256") not in known:
-                remarks.append(Said("verification.other-arm", {"file": path.name, "arm": str(each.get("path"))}))
-    elif file.arm != result.arm.name:
-        remarks.append(Said("verification.by-name", {"file": path.name, "arm": file.arm}))
+    name: str
+    """Of the file."""
+    sha256: str
+    file: VerificationFile
+    remarks: list[Said]
+    """Where it is not of this result's arm."""
+    lengths: list[TestedLengths]
+
+
+def verification(taken: Taken[VerificationFile]) -> Verification:
+    """What `ulna verify` found, with its length errors as arrays."""
     lengths = [
         _lengths(state.state, test)
-        for state in file.states
+        for state in taken.value.states
         for test in state.tests
         if test.kind in LENGTHS and test.figures
     ]
-    return Verification(path.name, digest, file, remarks, lengths)
+    return Verification(taken.file.name, taken.file.sha256, taken.value, taken.remarks, lengths)
 
 
 def _lengths(state: str, test: TestedTable) -> TestedLengths:

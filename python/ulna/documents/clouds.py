@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
-from ulna.documents.content import Cloud, Quiver, Trend
 from ulna.study.assembly import warmth_k
 from ulna.study.study import Study
 
@@ -20,6 +21,47 @@ RANGES = 24
 """Equal ranges of an abscissa in which means are taken."""
 FEWEST = 3
 """Readings in a range that give a mean with an uncertainty."""
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Means over equal ranges of an abscissa: what a cloud hides."""
+
+    x: F64
+    """(B,) middle of each range; ranges with fewer than three readings are left out."""
+    mean_mm: F64
+    u_mm: F64
+    """(B,) standard uncertainty of each mean."""
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Residuals over something."""
+
+    over: str
+    """"joint", "reach" or "temperature"."""
+    joint: int
+    """From 1; 0 where it is no joint (or one temperature for all)."""
+    x: F64
+    """(N,) degrees, mm or °C."""
+    residual_mm: F64
+    """(N,) over a joint: along the motion of the tip (or the change of the length) that this joint causes, signed;
+    else the residual's size."""
+    reading: I64
+    """(N,) index into `Readings`; length rows appear twice, once for each pose."""
+    trend: Trend
+
+
+@dataclass(frozen=True)
+class Quiver:
+    """Residual vectors in space. Touches of surfaces, whose residual has no direction of its own, are not in it."""
+
+    at_mm: F64
+    """(N, 3) the tip, in the base frame; of length rows the second pose."""
+    vector_mm: F64
+    """(N, 3) the residual; of length rows along the length."""
+    reading: I64
+    """(N,) index into `Readings`."""
 
 
 class _Poses:
@@ -46,7 +88,7 @@ class _Poses:
                 [-np.einsum("nkj,nk->nj", by_joint[0], along), np.einsum("nkj,nk->nj", by_joint[1], along)]
             )
             self.along_joint_mm: F64 | None = np.sign(change) * np.tile(rows["length_mm"].to_numpy(), 2)[:, None]
-        elif self.kind in SURFACES:
+        elif not kind_of(group.artefact).named:
             self.vector_mm = self.along_joint_mm = None
         else:
             vector_mm = rows.select("x_mm", "y_mm", "z_mm").to_numpy()

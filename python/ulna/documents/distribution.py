@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
@@ -10,11 +11,34 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from ulna.calibration.placements import PlacementFigures
-from ulna.documents.content import Sample
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
 MOST_BINS = 80
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Errors of one kind and their distribution."""
+
+    artefact: str
+    kind: str
+    """"length" (length rows; bars touched once at each end), "component" (x, y, z of point readings) or "distance"
+    (touches of a surface)."""
+    value_mm: F64
+    """(N,)"""
+    edges_mm: F64
+    """(B + 1,) of the histogram."""
+    counts: I64
+    """(B,)"""
+    mean_mm: float
+    sigma_mm: float
+    """Standard deviation (divided by n - 1)."""
+    quantile: F64
+    """(N,) of the standard normal distribution, ascending: Filliben's medians of order statistics."""
+    ordered_mm: F64
+    """(N,) the errors, ascending: of a normal distribution a straight line over `quantile`."""
 
 
 def samples(residuals: pl.DataFrame, placements: Sequence[PlacementFigures]) -> list[Sample]:

@@ -3,21 +3,74 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.probes import ProbeView
 from ulna.calibration.observability import indices
 from ulna.calibration.result import Result
-from ulna.documents.content import Observability, ParameterRow, Parameters
 from ulna.uncertainties.gum import coverage_factor
 
 F64 = NDArray[np.float64]
 
 COVERAGE = 0.95
 """Of every U of a parameter."""
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """One parameter."""
+
+    name: str
+    unit: str
+    nominal: float
+    estimate: float
+    u: float | None
+    """Standard uncertainty; None where held, not determined or not to be estimated."""
+    expanded: float | None
+    """U = k u."""
+    ratio: float | None
+    """(estimate - nominal) / u."""
+    status: str
+    """"fitted", "held" or "not-determined"."""
+    cause: str | None
+    """Why it is not determined, by its key: "base-frame", "probe-on-axis", …; None where it is, or nobody knows."""
+    reason: str | None
+    """The same in the words of the identification (English)."""
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The parameters and what is known of them."""
+
+    rows: list[ParameterRow]
+    k: float
+    """Coverage factor of every U."""
+    p: float
+    """Coverage probability that k stands for."""
+    degrees_of_freedom: float
+    """Infinite where the noise is stated, so that u does not come from the residuals."""
+    probes: list[ProbeView]
+    correlation_names: list[str]
+    correlation: F64
+    """(k, k), NaN where it is not known."""
+
+
+@dataclass(frozen=True)
+class Observability:
+    """How well the readings determine the parameters."""
+
+    singular_values: F64
+    """(k,) descending, of the Jacobian with columns of unit norm, placements eliminated."""
+    determined: int
+    indices: dict[str, float]
+    """O1 to O5 over the determined directions, columns scaled to a root mean square of one over the equations."""
+    equations: int
+    """Equations less the unknowns of the placements."""
 
 
 def parameters(result: Result) -> Parameters:

@@ -1,24 +1,15 @@
-"""The before/after table: what a metrologist reads, on the fitted readings and on readings held out."""
+"""The before/after table: what a metrologist reads of errors, on any readings."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from ulna.arm.arm import Arm
-from ulna.calibration.evaluate import study_of_arm
-from ulna.calibration.figures import overall_figures
 from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
-from ulna.documents.content import QualityRow, ReadFile, Said, Summary
-from ulna.formats.toml import check_format, read_json
-from ulna.ground.errors import UlnaInputError
-from ulna.study.file import rows_to_judge
-from ulna.study.study import Study
 
 #: quantity → its mean, RMS and largest among the figures; the others have no more than one number
 DISTRIBUTED = {
@@ -27,8 +18,37 @@ DISTRIBUTED = {
     "coordinate_error": ("coordinate_error_mean_mm", "coordinate_error_rms_mm", "coordinate_error_max_mm"),
 }
 WORST = {"form": "form_mm", "diameter_error": "diameter_error_mm"}
-#: what is said of held-out readings that weakens what they show
-CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study", "held-out.unknown-arm")
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a table of errors shows, mm."""
+
+    mean_mm: float
+    """Signed for length errors; of distances, which are positive, just their mean; NaN where it is not known."""
+    rms_mm: float
+    max_mm: float
+    """Largest size."""
+
+    @property
+    def two_sigma_mm(self) -> float:
+        """2 √(RMS² - mean²): twice the standard deviation about the mean (of n, not n - 1); NaN if not known."""
+        variance = self.rms_mm**2 - self.mean_mm**2
+        return variance if np.isnan(variance) else 2.0 * float(np.sqrt(max(variance, 0.0)))
+
+
+@dataclass(frozen=True)
+class QualityRow:
+    """One quantity on one set of readings, before and after."""
+
+    quantity: str
+    """"length_error", "seat_scatter", "coordinate_error", "form", "diameter_error", or "residual": its size."""
+    readings: str
+    """"fitted"; "check" (rows of the study that were kept), "left-out" (cross-validation) or "evaluated": held out."""
+    before: Summary | None
+    after: Summary | None
+    signed: bool
+    """Whether the mean is of signed errors."""
 
 
 def quality_rows(readings: str, before: Figures | None, after: Figures) -> list[QualityRow]:
@@ -61,79 +81,3 @@ def _summary(quantity: str, found: Mapping[str, float]) -> Summary | None:
     if mean is None or rms is None or most is None:
         return None
     return Summary(mean, rms, most)
-
-
-def held_out(
-    result: Result, study: Study | None, cross_validation: Path | None, evaluation: Path | None
-) -> tuple[list[QualityRow], list[Said], list[ReadFile]]:
-    """Rows on readings that the fit has not seen, and what they are; where there are none, what would be needed; and
-    the files that were read for that.
-
-    Rows that the study keeps to check, groups left out in a cross-validation, an evaluation on another study. Raises
-    UlnaInputError for a file that is none of that, and for an evaluation of an arm with other parameters.
-    """
-    files: list[ReadFile] = []
-    rows: list[QualityRow] = []
-    said: list[Said] = []
-    if study is not None and study.path is not None and study.rows == "fit" and rows_to_judge(study.path) == "check":
-        check = Study.load(study.path, "check")
-        after = overall_figures(result.arm, study_of_arm(check, result.arm))
-        before = overall_figures(start_of(result), study_of_arm(check, result.arm))
-        rows += quality_rows("check", before, after)
-        said.append(Said("held-out.check", {"readings": sum(len(group) for group in check.readings)}))
-    if cross_validation is not None:
-        document, digest = read_json(cross_validation, "a cross-validation.json")
-        check_format(document, cross_validation, "ulna-cross-validation")
-        files.append(ReadFile(cross_validation.name, digest))
-        rows += quality_rows("left-out", document["before"], document["after"])
-        values = {"by": str(document.get("by", "")), "groups": len(document["groups"]), "file": cross_validation.name}
-        said.append(Said("held-out.left-out", values))
-        if _sources(document) != _sources({"provenance": result.provenance}):
-            said.append(Said("held-out.other-study", {"file": cross_validation.name}))
-    if evaluation is not None:
-        document, digest = read_json(evaluation, "an evaluation.json")
-        check_format(document, evaluation, "ulna-evaluation")
-        files.append(ReadFile(evaluation.name, digest))
-        same = _is_of(result.arm, document, evaluation)
-        rows += quality_rows("evaluated", None, document["overall"])
-        readings = sum(int(entry.get("readings", 0)) for entry in document["artefacts"])
-        said.append(Said("held-out.evaluated", {"readings": readings, "file": evaluation.name}))
-        if set(_sources(document)[1:]) & set(_data_sources(result.provenance)):
-            said.append(Said("held-out.same-readings", {"file": evaluation.name}))
-        if not same:
-            said.append(Said("held-out.unknown-arm", {"file": evaluation.name, "arm": str(document.get("arm", "–"))}))
-    if not rows:
-        said.append(Said("held-out.none"))
-    return rows, said, files
-
-
-def _is_of(arm: Arm, document: Mapping[str, Any], path: Path) -> bool:
-    """Whether an evaluation is of this arm; False where it does not say, as before its key `parameters`. Raises
-    UlnaInputError where it is of another."""
-    given = document.get("parameters")
-    if not isinstance(given, dict):
-        return False
-    for name, value in zip(arm.parameter_names, arm.parameters.tolist(), strict=True):
-        other = given.get(name)
-        if not isinstance(other, int | float) or not np.isclose(other, value, rtol=1e-9, atol=1e-12):
-            shown = "missing" if other is None else f"{other}"
-            raise UlnaInputError(
-                f"{path}: is an evaluation of another arm ('{document.get('arm')}'): its parameters.{name} is {shown}, "
-                f"expected {value!r}, as in the result. Evaluate this result (ulna evaluate RESULT STUDY -o FOLDER) "
-                "and give that file."
-            )
-    return True
-
-
-def start_of(result: Result) -> Arm:
-    """The arm that the fit started from, with the signs that it found."""
-    start = {row.name: row.start for row in result.parameters}
-    return result.arm.with_parameters([start[name] for name in result.arm.parameter_names])
-
-
-def _sources(document: Mapping[str, Any]) -> list[str]:
-    return [file["sha256"] for file in document.get("provenance", {}).get("files", [])]
-
-
-def _data_sources(made: Mapping[str, Any]) -> list[str]:
-    return [file["sha256"] for file in made.get("files", []) if file.get("rows", 0)]

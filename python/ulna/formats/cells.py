@@ -9,8 +9,6 @@ import polars as pl
 
 from ulna.formats.header import Header, Numeric
 
-WHAT = "a table (CSV with a header, Parquet, .xlsx, .mat or HDF5)"
-
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
     """The message for a cell that is empty, no number or no finite number."""

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import re
 import typing
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Tag, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, ConfigDict, Discriminator, GetCoreSchemaHandler, Tag, ValidationError
+from pydantic_core import CoreSchema, ErrorDetails
 
 from ulna.ground.errors import UlnaInputError, nearest
 
@@ -31,6 +34,32 @@ class Open(BaseModel):
     """A table of a file that Ulna writes: later versions may add keys."""
 
     model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, defer_build=True)
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Note of an annotation: the tables of a registry, told apart by their key `kind`.
+
+    `Annotated[TheirCommonTable, OneOf({"bar": BarTable, "seat": SeatTable})]` is read, and described by JSON Schema, as
+    a union of these tables written by hand would be.
+    """
+
+    tables: Mapping[str, type[BaseModel]]
+
+    @property
+    def union(self) -> Any:
+        """The same as an annotation."""
+        tagged: list[Any] = [Annotated[table, Tag(f"<{kind}>")] for kind, table in self.tables.items()]
+        return Annotated[reduce(or_, tagged), Discriminator(_kind)]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """What stands in place of the annotated type."""
+        return handler.generate_schema(self.union)
+
+
+def _kind(table: Any) -> str:
+    kind = table.get("kind") if isinstance(table, dict) else getattr(table, "kind", None)
+    return f"<{kind}>"
 
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -171,7 +200,8 @@ def _tagged(annotation: Any, tag: str) -> list[Any]:
     """The members of a union that bear a tag."""
     if typing.get_origin(annotation) is typing.Annotated:
         inner, *notes = typing.get_args(annotation)
-        return [inner] if Tag(tag) in notes else _tagged(inner, tag)
+        registered = [note.tables[tag[1:-1]] for note in notes if isinstance(note, OneOf) and tag[1:-1] in note.tables]
+        return registered or ([inner] if Tag(tag) in notes else _tagged(inner, tag))
     if typing.get_origin(annotation) in (list, dict):
         return []
     return [inner for each in typing.get_args(annotation) for inner in _tagged(each, tag)]
@@ -184,7 +214,9 @@ def _plain(annotations: list[Any]) -> list[Any]:
         if typing.get_origin(each) in (list, dict) or not typing.get_args(each):
             plain.append(each)
         elif typing.get_origin(each) is typing.Annotated:
-            plain += _plain([typing.get_args(each)[0]])
+            inner, *notes = typing.get_args(each)
+            tables = [table for note in notes if isinstance(note, OneOf) for table in note.tables.values()]
+            plain += tables or _plain([inner])
         else:
             plain += _plain([arg for arg in typing.get_args(each) if not isinstance(arg, str | int)])
     return plain

@@ -10,8 +10,11 @@ from ulna.arm.arm import Arm
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.verification.bench import Bench
+from ulna.verification.budget import Surroundings
+from ulna.verification.certified import ARTEFACTS
 from ulna.verification.profile import Profile, load_profile
-from ulna.verification.tables import ARTEFACT_KINDS, VerifyFile
+from ulna.verification.tables import State, VerifyFile
 from ulna.verification.touches import Setting, Touches, read_touches
 
 WHAT = 'a verify file (TOML, format = "ulna-verify/1")'
@@ -42,9 +45,21 @@ class VerifyPlan:
     profile: Profile
     arms: list[StatedArm]
     """Those that turned encoder readings into points; that of the command first."""
-    touches: dict[str, list[Touches]]
+    touches: dict[State, list[Touches]]
     """State → files."""
     warnings: list[str]
+
+    @property
+    def bench(self) -> Bench:
+        """What the tests stand on, mm."""
+        mm, temperature, fixture = self.file.units.mm, self.file.temperature, self.file.fixture
+        surroundings = Surroundings(
+            None if temperature is None else temperature.value,
+            None if temperature is None else temperature.u,
+            None if fixture is None else fixture.u * mm,
+        )
+        range_mm = None if self.file.range is None else self.file.range * mm
+        return Bench(self.path, self.file.artefact, mm, surroundings, range_mm)
 
 
 def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
@@ -60,7 +75,7 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
     remarks: list[str] = []
     temperature_c = None if file.temperature is None else file.temperature.value
     setting = Setting(path, file.units, None if file.ball is None else file.ball * file.units.mm, temperature_c)
-    found: dict[str, list[Touches]] = {}
+    found: dict[State, list[Touches]] = {}
     used = set()
     for number, entry in enumerate(file.readings, start=1):
         own = arm_path if entry.arm is None else path.parent / entry.arm
@@ -82,7 +97,7 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
 def _check_kinds(document: dict[str, Any], path: Path) -> None:
     artefacts = document.get("artefact")
     for name, table in artefacts.items() if isinstance(artefacts, dict) else ():
-        check_kind(table, f"artefact.{name}", ARTEFACT_KINDS, path)
+        check_kind(table, f"artefact.{name}", list(ARTEFACTS), path)
 
 
 def _check_labels(touches: Touches, file: VerifyFile, profile: Profile, path: Path) -> None:

@@ -11,9 +11,10 @@ from typing import Any
 import polars as pl
 
 from ulna.formats.toml_text import toml_key, toml_value
-from ulna.verification.kinds.registry import figures_of
+from ulna.verification.kinds.registry import kind_of
+from ulna.verification.kinds.steps import Step
 from ulna.verification.profile import Profile, shipped
-from ulna.verification.steps import Step, lengths_of, needs_ball, steps_of
+from ulna.verification.steps import artefacts_of, steps_of
 
 PLAN = "plan.toml"
 TOUCHES = "touches.csv"
@@ -52,16 +53,17 @@ def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) ->
         lines.append(_line("ball", filled.ball_mm, "6.0              # diameter of the probe's ball"))
     lines.append(_line("range", filled.range_mm, "2400.0          # diameter of the measuring range"))
     lines += ["", "[mpe]               # maximum permissible errors; a figure without one gets no verdict"]
-    figures = [figure for table in profile.file.test.values() for figure in figures_of(table)]
-    for figure in figures:
-        example = "{ a = 0.030, b = 40000 }     # a + L / b" if figure.key.startswith("E_") else "0.030"
-        lines.append(_line(toml_key(figure.key), filled.mpe.get(figure.key), example))
-    for artefact, table in _artefacts(profile).items():
-        known = filled.artefacts.get(artefact, {})
-        lines += ["", f"[artefact.{toml_key(artefact)}]"]
-        for key, example in table.items():
-            given = known.get(key, example if key in ("kind", "ends") else None)
-            lines.append(_line(key, given, str(example)))
+    for table in profile.file.test.values():
+        kind = kind_of(table.kind)
+        for figure in kind.figures(table):
+            grows = isinstance(kind.limits.get(figure.key), Mapping)
+            example = "{ a = 0.030, b = 40000 }     # a + L / b" if grows else "0.030"
+            lines.append(_line(toml_key(figure.key), filled.mpe.get(figure.key), example))
+    for artefact in artefacts_of(profile.file):
+        known = filled.artefacts.get(artefact.name, {})
+        keys = artefact.keys()
+        lines += ["", f"[artefact.{toml_key(artefact.name)}]"] if keys else []
+        lines += [_line(key.name, known.get(key.name, key.value), key.example) for key in keys]
     temperature = filled.temperature or {}
     lines += [
         "",
@@ -93,30 +95,6 @@ def touches_table(profile: Profile, columns: Mapping[str, list[Any]]) -> pl.Data
         "what to do": [step.what for step in steps],
     }
     return pl.DataFrame({**labels, **columns}, strict=False)
-
-
-def _artefacts(profile: Profile) -> dict[str, dict[str, Any]]:
-    """Key → value, or an example of it."""
-    found: dict[str, dict[str, Any]] = {}
-    if needs_ball(profile.file):
-        found["ball"] = {
-            "kind": "ball",
-            "diameter": "25.0000        # from its certificate",
-            "u": "0.0003                # standard uncertainty: U / k",
-            "form": "0.0005             # peak to valley",
-            "expansion": "5.5e-6        # 1/K",
-            "u_expansion": "0.5e-6",
-        }
-    for length in lengths_of(profile.file):
-        found[length.name] = {
-            "kind": "length",
-            "length": f"1000.0           # from its certificate; about {100 * length.share:.0f} % of the range",
-            "u": "0.0010                # standard uncertainty: U / k",
-            "ends": length.ends,
-            "expansion": "11.5e-6       # 1/K",
-            "u_expansion": "0.5e-6",
-        }
-    return found
 
 
 def _path_from(folder: Path, path: Path) -> str:

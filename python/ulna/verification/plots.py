@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ulna.ground.arrays import F64
 from ulna.ground.style import BLUE, GREEN, GREY, STYLE, VERMILION, save_picture
+from ulna.verification.kinds.registry import kind_of
 from ulna.verification.outcome import FigureResult, StateResult
 
 MARKS = {"pass": ("o", BLUE, "passes"), "undecided": ("D", GREEN, "undecided"), "fail": ("X", VERMILION, "fails")}
@@ -20,10 +21,7 @@ NO_VERDICT = ("o", GREY, "no limit stated")
 def draw_lengths(states: list[StateResult], folder: Path) -> None:
     """`lengths.svg` and `lengths.png`: one panel for each length test, a column for each state."""
     tested = [
-        (state.state, test.figures[0])
-        for state in states
-        for test in state.tests
-        if test.kind in ("length", "volumetric")
+        (state.state, test.figures[0]) for state in states for test in state.tests if kind_of(test.kind).length_errors
     ]
     names = list(dict.fromkeys(figure.definition.name for _, figure in tested))
     columns = list(dict.fromkeys(state for state, _ in tested))

@@ -10,7 +10,8 @@ from typing import Any
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.verification.profile_tables import KINDS, ProfileFile
+from ulna.verification.kinds.registry import KINDS
+from ulna.verification.profile_tables import ProfileFile
 
 WHAT = 'a profile (TOML, format = "ulna-profile/1")'
 
@@ -99,4 +100,4 @@ def _merged(under: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
 def _check_kinds(document: dict[str, Any], path: Path) -> None:
     tests = document.get("test")
     for name, table in tests.items() if isinstance(tests, dict) else ():
-        check_kind(table, f"test.{name}", KINDS, path)
+        check_kind(table, f"test.{name}", list(KINDS), path)

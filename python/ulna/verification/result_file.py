@@ -1,4 +1,7 @@
-"""`ulna-verification/1`: what an acceptance test found, as JSON. Lengths mm."""
+"""`ulna-verification/1`: what an acceptance test found, as JSON. Lengths mm.
+
+These models write the file (`ulna.verification.outcome_tables` fills them) and read it, in reports and certificates.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,14 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict
 
 from ulna.formats.models import fill
+from ulna.formats.numbers import Amount
 from ulna.formats.toml import check_format, read_json
-from ulna.verification.profile_tables import Rule
+from ulna.verification.decision import Verdict
+from ulna.verification.limits import Rule
+from ulna.verification.tables import State
 
-WHAT = 'a verification.json (format = "ulna-verification/1")'
-
-Word = Literal["pass", "fail", "undecided"]
+FORMAT: Literal["ulna-verification/1"] = "ulna-verification/1"
+WHAT = f'a verification.json (format = "{FORMAT}")'
 
 
 class Written(BaseModel):
@@ -38,7 +43,7 @@ class ValueTable(Written):
     u: float | None
     """Standard uncertainty of the value."""
     guard: float | None
-    verdict: Word | None
+    verdict: Verdict | None
     """null where nothing can be said."""
 
 
@@ -79,7 +84,7 @@ class FigureTable(Written):
     expanded: float | None
     """U = k u"""
     guard: float | None
-    verdict: Word | None
+    verdict: Verdict | None
     why: str | None
     """Why there is no verdict."""
     budget: list[ContributorTable]
@@ -96,7 +101,7 @@ class TestedTable(Written):
     name: str
     kind: str
     readings: int
-    verdict: Word | None
+    verdict: Verdict | None
     departures: list[str]
     """In words: where what was measured is not what the profile counts."""
     figures: list[FigureTable]
@@ -105,8 +110,8 @@ class TestedTable(Written):
 class StateTable(Written):
     """All tests in one state of the arm."""
 
-    state: Literal["as-found", "as-left"]
-    verdict: Word | None
+    state: State
+    verdict: Verdict | None
     departures: list[str]
     """Tests that were not measured."""
     tests: list[TestedTable]
@@ -131,21 +136,79 @@ class UsedDecision(Written):
     p: float
 
 
+class TemperatureTable(Written):
+    """Of the artefacts."""
+
+    value: float
+    """°C"""
+    u: Amount
+    """Standard uncertainty, K."""
+
+
+class StandingTable(Written):
+    """How still artefacts stood."""
+
+    u: Amount
+    """Standard uncertainty."""
+
+
+class EnvironmentTable(Written):
+    """What holds for all tests; null where it was not stated."""
+
+    temperature: TemperatureTable | None
+    fixture: StandingTable | None
+    range: float | None
+    """Diameter of the measuring range."""
+
+
+class SourceTable(Written):
+    """A file that figures come from."""
+
+    path: str
+    sha256: str
+
+
+class TouchesTable(SourceTable):
+    """A file of touches."""
+
+    state: State
+    rows: int
+    points: Literal["encoders", "xyz"]
+    """What the rows are: encoder readings, or coordinates."""
+    arm_sha256: str | None = None
+    """Of the file of the arm that made points of encoder readings."""
+
+
+class ProvenanceTable(Written):
+    """From what and with what figures were made."""
+
+    program: str
+    version: str
+    plan: SourceTable
+    """The verify file."""
+    arms: list[SourceTable]
+    """Arm files that made points of encoder readings; that of the command first."""
+    files: list[TouchesTable]
+    warnings: list[str]
+    time: str
+    """ISO 8601"""
+
+
 class VerificationFile(Written):
     """What an acceptance test found: `ulna-verification/1`."""
 
     format: Literal["ulna-verification/1"]
     arm: str
-    verdict: Word | None
+    verdict: Verdict | None
     """The worst of all states."""
     profile: UsedProfile
     decision: UsedDecision
-    environment: dict[str, Any]
-    """temperature {value, u} in °C and K, fixture {u}, range; null where not stated."""
+    environment: EnvironmentTable
     artefacts: list[dict[str, Any]]
+    """name, then the keys of a verify file's table of it."""
     states: list[StateTable]
     """as-found before as-left."""
-    provenance: dict[str, Any]
+    provenance: ProvenanceTable
 
 
 def load_verification(path: Path) -> tuple[VerificationFile, str]:

@@ -2,65 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from ulna.formats.layout import TableKeys
 from ulna.formats.models import Strict
+from ulna.formats.numbers import Amount, Positive
 from ulna.formats.units import Units
-from ulna.verification.profile_tables import LimitValue, Positive, Rule
+from ulna.verification.certified import AnyArtefact
+from ulna.verification.limits import LimitValue, Rule
 
-NotNegative = Annotated[float, Field(ge=0)]
-Ends = Literal["seats", "balls", "faces", "opposite-faces"]
 State = Literal["as-found", "as-left"]
 STATES: tuple[State, ...] = ("as-found", "as-left")
-
-
-class BallTable(Strict):
-    """A calibrated ball, or a hollow."""
-
-    kind: Literal["ball"]
-    diameter: Positive
-    u: NotNegative
-    """Standard uncertainty of the diameter, from its certificate."""
-    form: NotNegative | None = None
-    """Its deviation from a ball, peak to valley."""
-    inside: bool = False
-    """A hollow, touched from within."""
-    expansion: NotNegative | None = None
-    """1/K"""
-    u_expansion: NotNegative | None = None
-    """Standard uncertainty of that, 1/K."""
-
-
-class CalibratedLengthTable(Strict):
-    """A calibrated length between two ends, A and B."""
-
-    kind: Literal["length"]
-    length: Positive
-    u: NotNegative
-    """Standard uncertainty of the length, from its certificate."""
-    ends: Ends
-    """seats: cones or sockets for the probe's ball; balls, touched all around; faces, touched from the same direction;
-    opposite-faces, as of a gauge block."""
-    expansion: NotNegative | None = None
-    """1/K"""
-    u_expansion: NotNegative | None = None
-    """Standard uncertainty of that, 1/K."""
-
-
-ARTEFACT_KINDS = ("ball", "length")
-
-
-def _kind(table: Any) -> str:
-    kind = table.get("kind") if isinstance(table, dict) else getattr(table, "kind", None)
-    return f"<{kind}>"
-
-
-VerifyArtefact = Annotated[
-    Annotated[BallTable, Tag("<ball>")] | Annotated[CalibratedLengthTable, Tag("<length>")], Discriminator(_kind)
-]
 
 
 class VerifyTemperature(Strict):
@@ -68,14 +22,14 @@ class VerifyTemperature(Strict):
 
     value: float
     """°C"""
-    u: NotNegative
+    u: Amount
     """Standard uncertainty, K."""
 
 
 class FixtureTable(Strict):
     """How still artefacts stand while they are measured."""
 
-    u: NotNegative
+    u: Amount
     """Standard uncertainty that they add to a value."""
 
 
@@ -112,7 +66,7 @@ class VerifyFile(Strict):
     units: Units
     arm: str | None = None
     """What reports call the arm: maker, type, serial number. The arm file's name where it is not given."""
-    ball: NotNegative | None = None
+    ball: Amount | None = None
     """Diameter of the probe's ball, for readings as x, y, z; 0 where they are points of the surface already."""
     range: Positive | None = None
     """Diameter of the measuring range."""
@@ -120,7 +74,7 @@ class VerifyFile(Strict):
     """The decision rule, in place of the profile's."""
     mpe: dict[str, LimitValue] = Field(default_factory=dict)
     """Maximum permissible errors, by the short name of a figure; a figure without one has no verdict."""
-    artefact: dict[str, VerifyArtefact] = Field(default_factory=dict)
+    artefact: dict[str, AnyArtefact] = Field(default_factory=dict)
     """By name."""
     temperature: VerifyTemperature | None = None
     fixture: FixtureTable | None = None

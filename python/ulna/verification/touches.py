@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import polars as pl
@@ -35,8 +36,7 @@ class Touches:
 
     path: Path
     sha256: str
-    source: str
-    """"encoders" or "xyz"."""
+    source: Literal["encoders", "xyz"]
     labels: dict[str, Texts]
     """Each of LABELS: (N,) str, "" where nothing is said."""
     p_mm: F64

@@ -6,8 +6,9 @@ import math
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ulna.calibration.result import Result
 from ulna.documents.certified.parameters import StatedParameters, stated_parameters
+from ulna.documents.sources.result import read_calibration
+from ulna.documents.sources.source import Calibration
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 
@@ -21,14 +22,15 @@ MOST = 1e300
 MOST_COUNTED = 2**53
 
 
-def certified_result(path: Path) -> tuple[Result, StatedParameters, str]:
-    """A result.json, what can be stated of its parameters, and its SHA-256.
+def certified_result(path: Path) -> tuple[Calibration, StatedParameters]:
+    """A result.json, and what can be stated of its parameters.
 
     Raises UlnaInputError for a file that was changed or damaged, and for a fit that did not converge.
     """
-    document, sha256 = read_json(path, "a result.json")
+    document, _ = read_json(path, "a result.json")
     check_format(document, path, "ulna-result")
-    result = Result.load(path)
+    calibration = read_calibration(path)
+    result = calibration.result
     _check_overall(document, path)
     if not result.fit.converged:
         raise UlnaInputError(
@@ -56,7 +58,7 @@ def certified_result(path: Path) -> tuple[Result, StatedParameters, str]:
             )
     if not (math.isfinite(stated.k) and math.isfinite(stated.k_region)):
         _damaged(path, "fit.degrees_of_freedom", f"{stated.degrees_of_freedom:g} give no coverage factor")
-    return result, stated, sha256
+    return calibration, stated
 
 
 def _check_overall(document: dict[str, Any], path: Path) -> None:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Annotated, NoReturn
-
-from pydantic import Field
+from typing import NoReturn
 
 from ulna.calibration.result import Result
 from ulna.documents.certified.source import MOST
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests, Temperature
 from ulna.documents.laboratory.tables import ItemTable
-from ulna.formats.models import Open, fill
-from ulna.formats.toml import read_bytes, sha256
+from ulna.documents.sources.source import Calibration
+from ulna.documents.sources.verification import calibrated_arms, strange_arms
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.result_file import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
 
@@ -22,57 +20,17 @@ from ulna.verification.result_file import FigureTable, StateTable, ValueTable, V
 _SLACK = 1e-9
 
 
-class _ArtefactTemperature(Open):
-    """Of the artefacts, °C and K."""
-
-    value: float
-    u: Annotated[float, Field(ge=0)]
-
-
-class _Environment(Open):
-    """What holds for all tests of a file."""
-
-    temperature: _ArtefactTemperature | None = None
-
-
-class _Source(Open):
-    """A file that figures come from."""
-
-    path: str
-    sha256: str
-
-
-class _Readings(_Source):
-    """A file of touches."""
-
-    state: str
-    points: str
-    """"encoders" or "xyz"."""
-
-
-class _Made(Open):
-    """From what and with what the figures were made."""
-
-    version: str
-    plan: _Source
-    arms: list[_Source]
-    files: list[_Readings]
-
-
-def stated_tests(
-    path: Path, result: Result, result_path: Path, result_sha256: str, item: ItemTable
-) -> list[StatedTests]:
+def stated_tests(path: Path, calibration: Calibration, item: ItemTable) -> list[StatedTests]:
     """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
     file, digest = load_verification(path)
-    made = fill(_Made, file.provenance, path)
-    _check_arm(file, made, path, result, result_path, result_sha256, item)
-    return [_state(file, made, state, path, digest) for state in file.states]
+    _check_arm(file, path, calibration, item)
+    return [_state(file, state, path, digest) for state in file.states]
 
 
-def _state(file: VerificationFile, made: _Made, state: StateTable, path: Path, digest: str) -> StatedTests:
+def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
     if not any(test.figures for test in state.tests):
         raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
-    stated = fill(_Environment, file.environment, path).temperature
+    made, stated = file.provenance, file.environment.temperature
     own = [each for each in made.files if each.state == state.state]
     files = [(path.name, digest), *((each.path, each.sha256) for each in (made.plan, *made.arms, *own))]
     return StatedTests(
@@ -153,35 +111,22 @@ def _damaged(path: Path, name: str, what: str) -> NoReturn:
     raise UlnaInputError(f"{path}: figure {name}: {what}. The file was changed or damaged: verify again.")
 
 
-def _check_arm(
-    file: VerificationFile,
-    made: _Made,
-    path: Path,
-    result: Result,
-    result_path: Path,
-    result_sha256: str,
-    item: ItemTable,
-) -> None:
-    """Tests by encoder readings name the arm files that made points of them: as left it must be this result, or the
-    arm.toml beside it; as found it may also be one that this calibration started from. Tests by coordinates name the
-    arm: its serial number must be in it. Raises UlnaInputError."""
+def _check_arm(file: VerificationFile, path: Path, calibration: Calibration, item: ItemTable) -> None:
+    """What a report remarks, a certificate refuses; and of tests as left one arm at least must be this calibration's.
+    Tests by coordinates name the arm: its serial number must be in it. Raises UlnaInputError."""
+    made = file.provenance
     if not made.arms or any(each.points == "xyz" for each in made.files):
-        _check_name(file, path, result, item)
+        _check_name(file, path, calibration.result, item)
     if not made.arms:
         return
-    calibrated = {result_sha256}
-    beside = result_path.parent / "arm.toml"
-    if beside.is_file():
-        calibrated.add(sha256(read_bytes(beside, "an arm file")))
-    before = {str(entry["sha256"]) for entry in result.provenance["files"]}
     states = {state.state for state in file.states}
-    allowed = calibrated if states == {"as-left"} else calibrated | before
-    strange = [each for each in made.arms if each.sha256 not in allowed]
+    strange = strange_arms(made.arms, calibration, as_found="as-found" in states)
+    calibrated = calibrated_arms(calibration)
     if strange or ("as-left" in states and not any(each.sha256 in calibrated for each in made.arms)):
         raise UlnaInputError(
             f"{path}: key 'provenance.arms': values were computed with {(strange or made.arms)[0].path}, another arm "
-            f"than that of {result_path}; expected tests of this calibration, as found also of the arm that it started "
-            f"from. Verify again with: ulna verify {result_path} PLAN"
+            f"than that of {calibration.path}; expected tests of this calibration, as found also of the arm that it "
+            f"started from. Verify again with: ulna verify {calibration.path} PLAN"
         )
 
 

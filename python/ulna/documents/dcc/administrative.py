@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ulna.documents.dcc.sheet import Element, Said, Sheet
+from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.laboratory.file import Laboratory
 from ulna.documents.laboratory.tables import (
     Address,
@@ -48,10 +48,10 @@ def software(sheet: Sheet, parent: Element, version: str) -> None:
     sheet.text(element, "name", _same(sheet, "Ulna"))
     sheet.dcc(element, "release", release(version))
     sheet.dcc(element, "type", "application")
-    sheet.text(element, "description", sheet.own("software", version=version))
+    sheet.text(element, "description", sheet.own("dcc.software", version=version))
 
 
-def _same(sheet: Sheet, text: str) -> Said:
+def _same(sheet: Sheet, text: str) -> Texts:
     """A name, the same in all languages."""
     return sheet.theirs(text)
 
@@ -73,7 +73,7 @@ def _core_data(sheet: Sheet, data: Element, certificate: CertificateTable, langu
     if certificate.order is not None:
         numbers = sheet.dcc(core, "identifications")
         identification(
-            sheet, numbers, "calibrationLaboratory", certificate.order, sheet.own("order"), "basic_orderNumber"
+            sheet, numbers, "calibrationLaboratory", certificate.order, sheet.own("dcc.order"), "basic_orderNumber"
         )
     if certificate.received is not None:
         sheet.dcc(core, "receiptDate", certificate.received.isoformat())
@@ -89,7 +89,7 @@ def _core_data(sheet: Sheet, data: Element, certificate: CertificateTable, langu
 
 
 def identification(
-    sheet: Sheet, parent: Element, issuer: str, value: str, name: Said | None = None, ref: str | None = None
+    sheet: Sheet, parent: Element, issuer: str, value: str, name: Texts | None = None, ref: str | None = None
 ) -> None:
     """A number by which somebody knows a thing."""
     element = sheet.dcc(parent, "identification", ref=ref)
@@ -107,7 +107,7 @@ def _item(sheet: Sheet, data: Element, item: ItemTable) -> None:
     sheet.text(sheet.dcc(element, "manufacturer"), "name", _same(sheet, item.manufacturer))
     sheet.dcc(element, "model", item.model)
     numbers = sheet.dcc(element, "identifications")
-    identification(sheet, numbers, "manufacturer", item.serial, sheet.own("serial"), "basic_serialNumber")
+    identification(sheet, numbers, "manufacturer", item.serial, sheet.own("dcc.serial"), "basic_serialNumber")
     for number in item.identifications:
         name = None if number.name is None else sheet.theirs(number.name)
         identification(sheet, numbers, number.issuer, number.value, name)

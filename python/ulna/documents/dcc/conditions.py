@@ -8,7 +8,7 @@ from pathlib import PurePath
 from ulna.calibration.result import Result
 from ulna.documents.dcc.administrative import identification
 from ulna.documents.dcc.quantities import quantity, real, standard_real
-from ulna.documents.dcc.sheet import Element, Said, Sheet
+from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.laboratory.tables import (
     EnvironmentTable,
     EquipmentTable,
@@ -22,13 +22,13 @@ from ulna.documents.laboratory.tables import (
 def calibration_method(sheet: Sheet, parent: Element, result: Result) -> None:
     """What Ulna did, as one of the used methods."""
     method = sheet.dcc(parent, "usedMethod")
-    sheet.text(method, "name", sheet.own("method"))
+    sheet.text(method, "name", sheet.own("dcc.method"))
     search = {"lm": "Levenberg–Marquardt"}.get(result.fit.method, f"{result.fit.method}, Levenberg–Marquardt")
     if result.fit.loss != "none":
         search += f", {result.fit.loss}"
     extras = ", ".join(result.arm.extras)
-    effects = sheet.own("effects", extras=extras) if extras else ""
-    sheet.text(method, "description", sheet.own("method-text", search=search, effects=effects))
+    effects = sheet.own("dcc.effects", extras=extras) if extras else ""
+    sheet.text(method, "description", sheet.own("dcc.method-text", search=search, effects=effects))
 
 
 def laboratory_methods(sheet: Sheet, parent: Element, methods: list[MethodTable]) -> None:
@@ -59,13 +59,13 @@ def equipment(sheet: Sheet, parent: Element, standards: list[EquipmentTable]) ->
         if standard.model is not None:
             sheet.dcc(one, "model", standard.model)
         numbers = sheet.dcc(one, "identifications")
-        identification(sheet, numbers, "manufacturer", standard.serial, sheet.own("serial"), "basic_serialNumber")
+        identification(sheet, numbers, "manufacturer", standard.serial, sheet.own("dcc.serial"), "basic_serialNumber")
 
 
-def _certified(sheet: Sheet, certificate: str, issuer: str | None) -> Said:
+def _certified(sheet: Sheet, certificate: str, issuer: str | None) -> Texts:
     if issuer is None:
-        return sheet.own("own-certificate", certificate=certificate)
-    return sheet.own("certified-by", certificate=certificate, issuer=issuer)
+        return sheet.own("dcc.own-certificate", certificate=certificate)
+    return sheet.own("dcc.certified-by", certificate=certificate, issuer=issuer)
 
 
 def influence_conditions(
@@ -77,12 +77,12 @@ def influence_conditions(
     if environment.humidity is not None:
         _condition(sheet, element, environment.humidity, "humidity", "1", 100.0, status)
     for key, text in (
-        ("humidity", sheet.own("humidity-missing") if environment.humidity is None else None),
+        ("humidity", sheet.own("dcc.humidity-missing") if environment.humidity is None else None),
         ("environment", None if environment.remark is None else sheet.theirs(environment.remark)),
     ):
         if text is not None:
             condition = sheet.dcc(element, "influenceCondition")
-            sheet.text(condition, "name", sheet.own(key))
+            sheet.text(condition, "name", sheet.own(f"dcc.{key}"))
             sheet.text(sheet.dcc(condition, "data"), "text", text)
     return element
 
@@ -98,25 +98,25 @@ def _condition(
 ) -> None:
     ref = {"temperature": "basic_temperature", "humidity": "basic_humidityRelative"}[key]
     element = sheet.dcc(parent, "influenceCondition", ref=ref)
-    sheet.text(element, "name", sheet.own(key))
+    sheet.text(element, "name", sheet.own(f"dcc.{key}"))
     if status is not None:
         sheet.dcc(element, "status", status)
     data = sheet.dcc(element, "data")
     if condition.value is not None and condition.u is not None:
-        one = quantity(sheet, data, sheet.own(key), ref)
+        one = quantity(sheet, data, sheet.own(f"dcc.{key}"), ref)
         standard_real(sheet, one, condition.value / divisor, unit, condition.u / divisor)
         return
     assert condition.low is not None  # the file was checked
     assert condition.high is not None
     for end, value in (("low", condition.low), ("high", condition.high)):
-        one = quantity(sheet, data, sheet.own(f"{key}-{end}"), ref + {"low": "Min", "high": "Max"}[end])
+        one = quantity(sheet, data, sheet.own(f"dcc.{key}-{end}"), ref + {"low": "Min", "high": "Max"}[end])
         real(sheet, one, value / divisor, unit)
 
 
 def input_files(sheet: Sheet, parent: Element, files: Sequence[tuple[str, str]]) -> None:
     """A dcc:metaData: from what files (path, SHA-256) something was made; by their names alone."""
     data = sheet.dcc(parent, "metaData")
-    sheet.text(data, "name", sheet.own("inputs"))
+    sheet.text(data, "name", sheet.own("dcc.inputs"))
     content = sheet.dcc(data, "data")
     for path, sha256 in files:
         sheet.text(content, "text", sheet.theirs(f"{PurePath(path).name}, SHA-256 {sha256}"))

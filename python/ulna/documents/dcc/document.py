@@ -22,6 +22,7 @@ from ulna.documents.dcc.sheet import DCC, NAMES, Element, Sheet
 from ulna.documents.dcc.statements import statements
 from ulna.documents.laboratory.file import Laboratory, load_laboratory
 from ulna.documents.laboratory.tables import LaboratoryFile
+from ulna.documents.sources.result import result_file
 
 VERSION = "3.3.0"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
@@ -80,16 +81,12 @@ def dcc_certificate(
     verification: files that `ulna verify` wrote, of the same arm; tested: further tests. Raises UlnaInputError, also
     for a calibration that did not converge, tests of another arm, and texts that XML cannot hold.
     """
-    path = Path(result)
-    path = path / "result.json" if path.is_dir() else path
+    path = result_file(Path(result))
     known = load_laboratory(laboratory)
-    found, stated, result_sha256 = certified_result(path)
+    calibration, stated = certified_result(path)
+    found = calibration.result
     tested = [
-        *(
-            tests
-            for each in verification
-            for tests in stated_tests(Path(each), found, path, result_sha256, known.file.item)
-        ),
+        *(tests for each in verification for tests in stated_tests(Path(each), calibration, known.file.item)),
         *tested,
     ]
     languages = tuple(known.file.languages)
@@ -102,7 +99,7 @@ def dcc_certificate(
     for tests in tested:
         conformity_statements(Sheet(languages, tests.source), data[-1], tests)
     measured = of_result.dcc(root, "measurementResults")
-    _calibration(of_result, of_laboratory, measured, found, stated, known, result_sha256)
+    _calibration(of_result, of_laboratory, measured, found, stated, known, calibration.sha256)
     for tests in tested:
         tests_result(Sheet(languages, tests.source), of_laboratory, measured, tests, known.file)
     etree.indent(root)
@@ -120,7 +117,7 @@ def _calibration(
     result_sha256: str,
 ) -> None:
     calibration = sheet.dcc(measured, "measurementResult")
-    sheet.text(calibration, "name", sheet.own("calibration"))
+    sheet.text(calibration, "name", sheet.own("dcc.calibration"))
     methods = sheet.dcc(calibration, "usedMethods")
     calibration_method(sheet, methods, found)
     laboratory_methods(of_laboratory, methods, known.file.method)

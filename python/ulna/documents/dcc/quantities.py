@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.documents.certified.parameters import last_place
-from ulna.documents.dcc.sheet import Element, Said, Sheet
+from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.dcc.units import dsi_product, dsi_unit
 
 F64 = NDArray[np.float64]
@@ -132,7 +132,7 @@ def _units(units: list[str]) -> str:
 
 
 def quantity(
-    sheet: Sheet, parent: Element, name: Said, ref: str | None = None, description: Said | None = None
+    sheet: Sheet, parent: Element, name: Texts, ref: str | None = None, description: Texts | None = None
 ) -> Element:
     """An empty dcc:quantity with its name."""
     element = sheet.dcc(parent, "quantity", ref=ref)

@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ulna.calibration.placements import NAMES, Figures
+from ulna.artefacts.quantities import NAMES
+from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.quantities import Expanded, Region, quantity, real, real_list
-from ulna.documents.dcc.sheet import Element, Said, Sheet
+from ulna.documents.dcc.sheet import Element, Sheet, Texts
 
 
-def result_of(sheet: Sheet, parent: Element, name: Said, description: Said | None = None) -> Element:
+def result_of(sheet: Sheet, parent: Element, name: Texts, description: Texts | None = None) -> Element:
     """A new dcc:result; its dcc:data is handed back."""
     element = sheet.dcc(parent, "result")
     sheet.text(element, "name", name)
@@ -24,12 +25,12 @@ def result_of(sheet: Sheet, parent: Element, name: Said, description: Said | Non
 
 def parameters(sheet: Sheet, results: Element, result: Result, stated: StatedParameters) -> None:
     """Fitted with U and their covariance, then those of which no uncertainty can be told."""
-    data = result_of(sheet, results, sheet.own("parameters"), sheet.own("parameters-text"))
+    data = result_of(sheet, results, sheet.own("dcc.parameters"), sheet.own("dcc.parameters-text"))
     if stated.fitted:
         rows = stated.fitted
         real_list(
             sheet,
-            quantity(sheet, data, sheet.own("fitted"), "basic_measuredValue"),
+            quantity(sheet, data, sheet.own("dcc.fitted"), "basic_measuredValue"),
             [row.name for row in rows],
             [row.value for row in rows],
             [row.unit for row in rows],
@@ -47,7 +48,7 @@ def _values(
     sheet: Sheet, data: Element, key: str, rows: Sequence[Parameter], values: Sequence[float], ref: str | None = None
 ) -> None:
     names, units = [row.name for row in rows], [row.unit for row in rows]
-    real_list(sheet, quantity(sheet, data, sheet.own(key), ref), names, values, units)
+    real_list(sheet, quantity(sheet, data, sheet.own(f"dcc.{key}"), ref), names, values, units)
 
 
 def _given(sheet: Sheet, data: Element, result: Result) -> None:
@@ -66,12 +67,12 @@ def _given(sheet: Sheet, data: Element, result: Result) -> None:
             ]
         given += [(f"gravity.{axis}", value, "1") for axis, value in zip("xyz", arm.gravity, strict=True)]
     names, values, units = zip(*given, strict=True)
-    real_list(sheet, quantity(sheet, data, sheet.own("given")), names, values, units)
+    real_list(sheet, quantity(sheet, data, sheet.own("dcc.given")), names, values, units)
 
 
 def fit(sheet: Sheet, results: Element, result: Result) -> None:
     """How the fit ended."""
-    data = result_of(sheet, results, sheet.own("fit"))
+    data = result_of(sheet, results, sheet.own("dcc.fit"))
     figures: list[tuple[str, float, str]] = [
         ("readings", result.fit.readings, "1"),
         ("freedom", result.fit.degrees_of_freedom, "1"),
@@ -81,22 +82,22 @@ def fit(sheet: Sheet, results: Element, result: Result) -> None:
     if result.fit.chi2_per_dof is not None:
         figures.append(("chi2", result.fit.chi2_per_dof, "1"))
     for key, value, unit in figures:
-        real(sheet, quantity(sheet, data, sheet.own(key)), value, unit)
+        real(sheet, quantity(sheet, data, sheet.own(f"dcc.{key}")), value, unit)
 
 
 def figures(sheet: Sheet, results: Element, result: Result) -> None:
     """What the fitted readings give, before and after, and which lie far off."""
-    data = result_of(sheet, results, sheet.own("figures"), sheet.own("figures-text"))
+    data = result_of(sheet, results, sheet.own("dcc.figures"), sheet.own("dcc.figures-text"))
     _figures(sheet, data, "before", result.before)
     _figures(sheet, data, "after", result.after)
     if not result.outliers:
-        sheet.text(data, "text", sheet.own("no-outliers"))
+        sheet.text(data, "text", sheet.own("dcc.no-outliers"))
         return
     element = sheet.dcc(data, "text")
-    _named(sheet, element, sheet.own("outliers"), sheet.own("outliers-kept"))
+    _named(sheet, element, sheet.own("dcc.outliers"), sheet.own("dcc.outliers-kept"))
     for entry in result.outliers:
         said = sheet.own(
-            "outlier",
+            "dcc.outlier",
             file=entry["file"],
             row=entry["row"],
             artefact=entry["artefact"],
@@ -107,7 +108,7 @@ def figures(sheet: Sheet, results: Element, result: Result) -> None:
         sheet.text(data, "text", said)
 
 
-def _named(sheet: Sheet, element: Element, name: Said, text: Said) -> None:
+def _named(sheet: Sheet, element: Element, name: Texts, text: Texts) -> None:
     """Name and content of a rich text."""
     sheet.text(element, "name", name)
     for language, each in text:
@@ -119,6 +120,6 @@ def _named(sheet: Sheet, element: Element, name: Said, text: Said) -> None:
 def _figures(sheet: Sheet, data: Element, key: str, values: Figures) -> None:
     names = [name for name in NAMES if name in values]
     if names:
-        one = quantity(sheet, data, sheet.own(key))
+        one = quantity(sheet, data, sheet.own(f"dcc.{key}"))
         labels = [name.removesuffix("_mm") for name in names]
         real_list(sheet, one, labels, [values[name] for name in names], ["mm"] * len(names))

@@ -5,13 +5,16 @@ Texts go through here, so that what XML cannot hold is told in one message and n
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from lxml import etree
 
-from ulna.documents.dcc.words import OWN_LANGUAGES, words
 from ulna.documents.laboratory.texts import unwritable
+from ulna.documents.languages.languages import LANGUAGES
+from ulna.documents.languages.text import Text, plain
+from ulna.documents.languages.words import Words
 from ulna.ground.errors import UlnaInputError
 
 DCC = "https://ptb.de/dcc"
@@ -20,7 +23,7 @@ NAMES = {"dcc": DCC, "si": SI}
 
 Element: TypeAlias = Any
 """An element of lxml, which ships no types."""
-Said = list[tuple[str | None, str]]
+Texts = list[tuple[str | None, str]]
 """A text: (language or None where it names none, text) of each language."""
 
 
@@ -59,22 +62,25 @@ class Sheet:
             )
         return text
 
-    def own(self, key: str, **values: object) -> Said:
-        """One of Ulna's own texts, in every language of the certificate where Ulna speaks them all, else in English
-        without a mark of language: a certificate may not mark some of its languages and leave out others. A value may
-        be such a text itself."""
-        if set(self.languages) <= set(OWN_LANGUAGES):
-            return [(language, words(key, language, **_in(language, values))) for language in self.languages]
-        return [(None, words(key, "en", **_in(None, values)))]
+    def own(self, key: str, **values: object) -> Texts:
+        """One text of the catalogue, see `spoken`. A value may be such texts itself."""
+        return self.spoken(lambda words, language: words(key, **_in(language, values)))
 
-    def theirs(self, text: str | dict[str, str]) -> Said:
+    def spoken(self, say: Callable[[Words, str | None], Text]) -> Texts:
+        """What Ulna says, in every language of the certificate where Ulna speaks them all, else in English without a
+        mark of language: a certificate may not mark some of its languages and leave out others."""
+        if set(self.languages) <= set(LANGUAGES):
+            return [(language, plain(say(Words(language), language))) for language in self.languages]
+        return [(None, plain(say(Words("en"), None)))]
+
+    def theirs(self, text: str | dict[str, str]) -> Texts:
         """A text of the laboratory file. A string belongs to all languages, so where there are several it is not
         marked."""
         if isinstance(text, dict):
             return [(language, text[language]) for language in self.languages]
         return [(self.languages[0] if len(self.languages) == 1 else None, text)]
 
-    def text(self, parent: Element, tag: str, said: Said, ref: str | None = None) -> Element:
+    def text(self, parent: Element, tag: str, said: Texts, ref: str | None = None) -> Element:
         """An element with one `content` for each language: dcc:textType or dcc:richContentType."""
         element = self.dcc(parent, tag, ref=ref)
         for language, each in said:

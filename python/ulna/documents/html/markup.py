@@ -1,68 +1,62 @@
-"""HTML out of text that nobody may trust: everything from files is escaped here, and nowhere else."""
+"""HTML out of text that nobody may trust: everything is escaped here (by markupsafe), and nowhere else."""
 
 from __future__ import annotations
 
 import html
 import json
-import math
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable
 from typing import Any
 
+from markupsafe import Markup, escape
+
+from ulna.documents.languages.text import END, ISOLATE, Code, Command, Name, Piece, Style, Styled, Text
 from ulna.documents.languages.words import Words
-from ulna.ground.digits import fixed, small
 
-ISOLATE, END = "\u2068", "\u2069"
-"""First-strong isolate of Unicode, for text that has no elements: right-to-left names do not turn their sentence."""
-
-
-def text(value: Any) -> str:
-    """Escaped, for elements and for attributes in quotes."""
-    return html.escape(str(value), quote=True)
-
-
-def name(value: Any) -> str:
-    """A name from a file: escaped, its direction its own."""
-    return f'<bdi dir="auto">{text(value)}</bdi>'
+#: how pieces are shown; a name has its direction for itself
+_NAME = Markup('<bdi dir="auto">{}</bdi>')
+_CODE = Markup("<code>{}</code>")
+_STYLES: dict[Style, Markup] = {
+    "english": Markup('<span lang="en">{}</span>'),
+    "aside": Markup("<small>{}</small>"),
+    "pass": Markup('<b class="verdict pass">{}</b>'),
+    "fail": Markup('<b class="verdict fail">{}</b>'),
+    "undecided": Markup('<b class="verdict undecided">{}</b>'),
+    "none": Markup('<b class="verdict">{}</b>'),
+}
 
 
-def number(value: float) -> str:
-    """A number in a sentence, four digits."""
-    if not math.isfinite(value):
-        return "–"
-    size = abs(value)
-    if value == 0.0 or 1e-3 <= size < 1e6:
-        return fixed(value, min(max(3 - math.floor(math.log10(size)), 0), 6)) if size else "0"
-    return small(value, 3)
+def inline(text: Text) -> Markup:
+    """Within an element."""
+    return Markup("").join(_piece(piece) for piece in text)
 
 
-def in_sentence(value: Any) -> str:
-    """What fills a sentence: names isolated, whole numbers as they are, others with four digits."""
-    if isinstance(value, float):
-        return number(value)
-    return str(value) if isinstance(value, int) else name(value)
+def _piece(piece: Piece) -> Markup:
+    if isinstance(piece, str):
+        return escape(piece)
+    if isinstance(piece, Styled):
+        return _STYLES[piece.style].format(inline(piece.text))
+    return _ELEMENTS[type(piece)].format(piece.text)
 
 
-def in_figure(value: Any) -> str:
-    """The same for text of a figure, which knows no elements of HTML but its entities."""
-    if isinstance(value, float):
-        return number(value)
-    return str(value) if isinstance(value, int) else f"{ISOLATE}{html.escape(str(value), quote=False)}{END}"
+_ELEMENTS: dict[type[Name | Command | Code], Markup] = {Name: _NAME, Command: _CODE, Code: _CODE}
 
 
-def prose(given: str) -> str:
-    """Our own words: escaped, `commands` as code."""
-    return re.sub("`([^`]+)`", r"<code>\1</code>", html.escape(given, quote=True))
+def label(text: Text) -> str:
+    """For the text of a plot, which knows no elements of HTML but its entities."""
+    return "".join(_in_plot(piece) for piece in text)
 
 
-def words_for_page(language: str) -> Words:
-    """The words of a language, for HTML."""
-    return Words(language, prose, in_sentence)
+def _in_plot(piece: Piece) -> str:
+    if isinstance(piece, Styled):
+        return label(piece.text)
+    if isinstance(piece, Name):
+        return f"{ISOLATE}{html.escape(piece.text, quote=False)}{END}"
+    return html.escape(piece if isinstance(piece, str) else piece.text, quote=False)
 
 
-def words_for_figures(language: str) -> Words:
-    """The same for titles of axes and legends."""
-    return Words(language, lambda given: html.escape(given, quote=False), in_figure)
+def labels(words: Words) -> Callable[..., str]:
+    """Words for titles of axes and legends."""
+    return lambda key, **values: label(words(key, **values))
 
 
 def json_in_script(value: Any) -> str:
@@ -71,32 +65,3 @@ def json_in_script(value: Any) -> str:
     for sign in "<>&\u2028\u2029":
         found = found.replace(sign, f"\\u{ord(sign):04x}")
     return found
-
-
-def paragraph(content: str, kind: str = "") -> str:
-    """`content` is HTML."""
-    marked = f' class="{kind}"' if kind else ""
-    return f"<p{marked}>{content}</p>\n" if content else ""
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[str]], label: str, left: int = 1, tall: bool = False) -> str:
-    """Cells are HTML; the first `left` columns hold words, the others numbers. It scrolls where it is too wide, and a
-    `tall` one where it is too long."""
-    top = "".join(f'<th scope="col"{_side(k < left)}>{head}</th>' for k, head in enumerate(heads))
-    body = []
-    for row in rows:
-        cells = "".join(f"<td{_side(k < left)}>{cell}</td>" for k, cell in enumerate(row))
-        body.append(f"<tr>{cells}</tr>\n")
-    return (
-        f'<div class="scroll{" tall" if tall else ""}" role="region" tabindex="0" aria-label="{label}"><table>\n'
-        f"<thead><tr>{top}</tr></thead>\n<tbody>\n{''.join(body)}</tbody></table></div>\n"
-    )
-
-
-def _side(left: bool) -> str:
-    return ' class="l"' if left else ""
-
-
-def section(key: str, words: Words, content: str) -> str:
-    """A section with its heading; `content` is HTML."""
-    return f'<section id="{key}"><h2>{words(f"section.{key}")}</h2>\n{content}</section>\n'

@@ -1,4 +1,4 @@
-"""What figures of Plotly share: a figure with its caption, axes with units, colours that change with the theme.
+"""What plots of Plotly share: a plot with its caption, axes with units, colours that change with the theme.
 
 Colours are those of Okabe and Ito (2008), which colour-blind readers can tell apart, and every kind of mark has a
 shape of its own besides. A colour here is a name such as "@main"; the page's script puts in that of the theme.
@@ -13,22 +13,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ulna.documents.languages.text import Text
+
 DIGITS = 6
-"""Of numbers in figures: more than a screen can show."""
+"""Of numbers in plots: more than a screen can show."""
 
 MAIN, OUTLIER, INK, SECOND, GRID = "@main", "@outlier", "@ink", "@second", "@grid"
 
 
 @dataclass(frozen=True)
 class Plot:
-    """One figure."""
+    """One plot."""
 
     name: str
     """Unique in the page, letters and hyphens."""
-    caption: str
-    """HTML."""
     data: list[dict[str, Any]]
     layout: dict[str, Any]
+    caption: Text = ()
+    """What must be said of what is shown."""
     height_px: int = 340
     solid: bool = False
     """Three-dimensional: drawn by WebGL."""
@@ -54,7 +56,7 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 
 def layout(x: Mapping[str, Any], y: Mapping[str, Any], legend: bool = False, **more: Any) -> dict[str, Any]:
-    """Of a plane figure."""
+    """Of a plane plot."""
     return {
         "xaxis": dict(x),
         "yaxis": dict(y),

@@ -1,1 +1,1 @@
-"""The words of every language that documents speak."""
+"""The catalogue: words of documents in every language, and text that no page has shaped yet."""

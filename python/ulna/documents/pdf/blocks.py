@@ -5,19 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from ulna.documents.pdf.text import Cell
+
 Block = dict[str, Any]
-Cell = str | dict[str, str]
-"""Text, or text with a style: see `code` and `english`."""
-
-
-def code(text: str) -> Cell:
-    """In letters of equal width."""
-    return {"text": text, "style": "code"}
-
-
-def english(text: str) -> Cell:
-    """English, whatever the language of the page."""
-    return {"text": text, "style": "english"}
 
 
 def heading(text: str, level: int = 1) -> Block:
@@ -25,13 +15,13 @@ def heading(text: str, level: int = 1) -> Block:
     return {"kind": "heading", "text": text, "level": level}
 
 
-def paragraph(text: str, style: str = "plain") -> Block:
+def paragraph(text: Cell, style: str = "plain") -> Block:
     """style: "plain", "note" (small), "lead" (small, kept with what follows), "missing" (marked: something is not
     known) or "bad" (marked strongly)."""
     return {"kind": "paragraph", "text": text, "style": style}
 
 
-def listed(texts: Sequence[str]) -> Block:
+def listed(texts: Sequence[Cell]) -> Block:
     """Points."""
     return {"kind": "list", "texts": list(texts)}
 
@@ -55,7 +45,7 @@ def table(
     }
 
 
-def facts(rows: Iterable[tuple[str, Sequence[Cell]]]) -> Block:
+def facts(rows: Iterable[tuple[Cell, Sequence[Cell]]]) -> Block:
     """What and its values, each on a line."""
     return {"kind": "facts", "rows": [[what, list(values)] for what, values in rows]}
 

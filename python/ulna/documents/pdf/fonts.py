@@ -18,6 +18,7 @@ from typing import Any
 
 import matplotlib as mpl
 
+from ulna.documents.languages.languages import language_of
 from ulna.ground.errors import UlnaInputError
 
 LETTERS = "Libertinus Serif"
@@ -67,12 +68,13 @@ class Chosen:
     def order(self, language: str) -> list[dict[str, Any]]:
         """Families in the order in which they are asked for a character; `letters`: only for letters and digits.
 
-        In Chinese the Han font comes second, so that quotation marks and dashes are as wide as they are there.
+        Where the language is written in Han signs, their font comes second, so that quotation marks and dashes are as
+        wide as they are there.
         """
-        chinese = language == "zh"
+        han = language_of(language).han
         more = [{"name": family.name, "letters": False} for family in self.more]
-        own = [{"name": LETTERS, "letters": chinese}, {"name": SIGNS, "letters": False}]
-        return [own[0], *more, own[1]] if chinese else [*own, *more]
+        own = [{"name": LETTERS, "letters": han}, {"name": SIGNS, "letters": False}]
+        return [own[0], *more, own[1]] if han else [*own, *more]
 
 
 def choose(text: Iterable[str], folder: Path | None = None) -> Chosen:

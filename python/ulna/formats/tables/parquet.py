@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, NoReturn
+from typing import NoReturn
 
 import polars as pl
 import polars.exceptions
 
-from ulna.formats.cells import WHAT, bad_cell, names_of, no_numbers
+from ulna.formats.cells import bad_cell, names_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
+from ulna.formats.layout import Layout
+from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
 _PAGE_BUFFER_BYTES = 1 << 20
@@ -20,8 +22,6 @@ _PAGE_BUFFER_BYTES = 1 << 20
 @dataclass(frozen=True)
 class ParquetTable(Header):
     """A table of typed columns."""
-
-    KIND: ClassVar[str] = "a Parquet file"
 
     @property
     def rows(self) -> int:
@@ -65,13 +65,24 @@ class ParquetTable(Header):
 
     def _unreadable(self, error: Exception) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {WHAT}.") from None
+        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}.") from None
 
 
-def open_parquet(path: Path, what: str) -> ParquetTable:
+def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> ParquetTable:
     """Raises UlnaInputError for a damaged file."""
     try:
-        return ParquetTable(path, list(pl.read_parquet_schema(path)))
+        return ParquetTable(path, list(pl.read_parquet_schema(path)), what=what)
     except (polars.exceptions.PolarsError, OSError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None
+
+
+PARQUET = TableFormat(
+    name="Parquet",
+    listed="Parquet",
+    kind="a Parquet file",
+    endings=(".parquet",),
+    keys=(),
+    recognised=lambda start: start.startswith(b"PAR1"),
+    open=open_parquet,
+)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.ground.errors import UlnaInputError
@@ -31,7 +32,7 @@ def merge(parts: list[Readings], artefacts: dict[str, Artefact], files: list[Inp
 
 def _name_placements(own: list[Readings], artefact: Artefact, study: Path) -> None:
     unnamed = [part for part in own if part.placement[0] == ""]
-    matters = artefact.kind != "length" and artefact.frame == "free"
+    matters = kind_of(artefact).placed(artefact)
     if unnamed and len(own) > 1 and matters:
         raise UlnaInputError(
             f"{study}: artefact '{artefact.name}' is in {len(own)} readings files, and not all of them say which "

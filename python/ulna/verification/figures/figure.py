@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,7 +24,7 @@ class Definition:
     """In words and signs; lengths in mm."""
     standard: str
     """Its source."""
-    unit: str = "mm"
+    unit: Literal["mm"] = "mm"
 
     def of(self, value: ArrayLike) -> Figure:
         """With a value of each test."""

@@ -9,8 +9,8 @@ from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.verification.certified import Ends
 from ulna.verification.figures.figure import points_of
-from ulna.verification.tables import Ends
 
 FORMULAS: dict[str, str] = {
     "seats": "distance between the means of the touches in seats A and B",

@@ -8,6 +8,11 @@ from ulna.verification.figures.lengths import OPPOSING, length_between
 from ulna.verification.outcome import Labels, Single
 from ulna.verification.touches import Touches
 
+LONGEST_SHARE = 0.66
+"""Of the range, where a profile does not say it."""
+WORDS = ("verification.lengths", "verification.no-mpe", "axis.length-mm", "axis.length-error-mm")
+"""Of a drawing of errors over lengths."""
+
 
 def measured_lengths(name: str, touches: Touches, bench: Bench) -> list[tuple[Length, Single]]:
     """One for each artefact in each position and repeat, in order. Raises UlnaInputError."""
