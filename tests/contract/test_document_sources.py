@@ -21,7 +21,7 @@ import ulna
 from ulna import UlnaInputError
 from ulna.arm.arm import Arm
 from ulna.cli.report import report
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.gather import gather
 from ulna.documents.languages.words import dictionary
 from ulna.documents.sources.result import read_calibration, result_file

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Text, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Table, own
