@@ -14,14 +14,14 @@ from pathlib import Path
 
 import pytest
 from tests.cli_runs import write_lengths
-from tests.reports import calibrated
 from tests.documents.test_acceptance import document as verification_document
+from tests.reports import calibrated
 
 import ulna
 from ulna import UlnaInputError
 from ulna.arm.arm import Arm
 from ulna.cli.report import report
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.gather import gather
 from ulna.documents.languages.words import dictionary
 from ulna.documents.sources.result import read_calibration, result_file

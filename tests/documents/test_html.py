@@ -15,17 +15,17 @@ from tests.cli_runs import write_lengths
 from tests.reports import HOSTILE, calibrated, seats_study
 
 from ulna.calibration.placements import PlacementFigures
-from ulna.documents.clouds import Quiver
-from ulna.documents.content import Content
-from ulna.documents.distribution import _sample
+from ulna.documents.content.clouds import Quiver
+from ulna.documents.content.content import Content
+from ulna.documents.content.distribution import _sample
+from ulna.documents.content.readings import ReadingRows
 from ulna.documents.gather import gather
 from ulna.documents.html.markup import inline, json_in_script, label
 from ulna.documents.html.page import render
 from ulna.documents.languages.languages import LANGUAGES
+from ulna.documents.languages.said import Said
 from ulna.documents.languages.text import Command, Name, number
 from ulna.documents.languages.words import dictionary
-from ulna.documents.readings import ReadingRows
-from ulna.documents.said import Said
 
 MEGABYTES_10 = 10_000_000
 
