@@ -4,6 +4,7 @@
 //! ([`gram::Gram`], for the steps on the way) or an orthogonal triangle ([`triangle::Triangle`], for every decision
 //! about rank and for covariances), so that no Jacobian is ever stored whole.
 
+pub mod full_rank;
 pub mod gram;
 pub mod lm;
 pub mod reflect;
