@@ -87,8 +87,8 @@ impl FullRank {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::decomposition::Decomposition;
     use crate::simd::{Columns, PAD};
+    use crate::solver::decomposition::Decomposition;
     use crate::solver::{RowBlock, RowSink};
 
     /// A triangle of 40 rows of 6 unknowns and two more columns; `shape` changes the rows' entries.
