@@ -1,8 +1,8 @@
 //! What a triangle says where every column that exists is well determined: the same numbers as from its singular values,
 //! in a tenth of the time.
 
+use super::equations::vanished;
 use super::triangle::Triangle;
-use super::vanished;
 
 /// A smallest singular value below this part of the largest is left to the singular values themselves: a hundredfold of
 /// what counts as zero there.
