@@ -55,26 +55,37 @@ class Described(GenerateJsonSchema):
     """Schemas whose properties are described by what stands below the models' fields."""
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
-        made = super().model_schema(schema)
-        for name, text in descriptions(schema["cls"]).items():
+        return self._described(super().model_schema(schema), schema["cls"])
+
+    def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
+        return self._described(super().dataclass_schema(schema), schema["cls"])
+
+    @staticmethod
+    def _described(made: JsonSchemaValue, of: type) -> JsonSchemaValue:
+        for name, text in descriptions(of).items():
             # what a field says of itself goes first
-            made["properties"][name].setdefault("description", text)
+            if name in made["properties"]:
+                made["properties"][name].setdefault("description", text)
         return made
 
 
-def descriptions(model: type[BaseModel]) -> dict[str, str]:
-    """Field → the text below it, of a model and of those that it is made from."""
+def descriptions(model: type) -> dict[str, str]:
+    """Field → the text below it, of a model or a dataclass and of those that it is made from."""
     found: dict[str, str] = {}
     for owner in reversed(model.__mro__):
-        if not issubclass(owner, BaseModel) or owner is BaseModel:
+        if owner in (BaseModel, object):
             continue
-        (body,) = ast.parse(textwrap.dedent(inspect.getsource(owner))).body
+        try:
+            source = inspect.getsource(owner)
+        except OSError:  # made from a registry: its fields say themselves what they are
+            continue
+        (body,) = ast.parse(textwrap.dedent(source)).body
         assert isinstance(body, ast.ClassDef)
         for line, after in pairwise(body.body):
             match line, after:
                 case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
                     found[name] = inspect.cleandoc(text)
-    return {name: text for name, text in found.items() if name in model.model_fields}
+    return found
 
 
 def schemas() -> dict[str, str]:

@@ -44,12 +44,15 @@ DAMAGED: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     "no version": (lambda result: result["provenance"].pop("version"), "'provenance.version' is missing"),
     "a file without sum": (lambda result: result["provenance"]["files"][1].pop("sha256"), "'provenance.files.2'"),
     "a text for a number": (lambda result: result["parameters"][1].update(value="1"), "'parameters.2.value'"),
-    "no figures": (lambda result: result["overall"].pop("before"), "'overall.before': expected a table"),
+    "no figures": (lambda result: result["overall"].pop("before"), "'overall.before' is missing"),
     "a text as a figure": (
         lambda result: result["overall"]["after"].update(form_mm="x"),
         "'overall.after.form_mm': got 'x', expected a number",
     ),
-    "a text in a placement": (lambda result: result["artefacts"][0].update(length_error_mean_mm="x"), "ulna-result/1"),
+    "a text in a placement": (
+        lambda result: result["artefacts"][0].update(length_error_mean_mm="x"),
+        "'artefacts.1.length_error_mean_mm': got 'x'",
+    ),
     "another unit": (lambda result: result["parameters"][1].update(unit="deg"), "'parameters.2.unit'"),
     "another uncertainty": (
         lambda result: result["parameters"][1].update(u=1e-3),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import warnings
 from pathlib import Path
@@ -134,7 +133,7 @@ def test_study_1_of_other_peoples_tables() -> None:
 
 def test_result_1() -> None:
     path = FOSSILS / "result-1.json"
-    ResultFile.model_validate(json.loads(path.read_text()))
+    ResultFile.model_validate_json(path.read_text())
     result = Result.load(path)
     assert (result.fit.converged, result.fit.readings, len(result.residuals)) == (True, 78, 78)
     assert result.identifiability.determined == 17
@@ -166,7 +165,7 @@ def test_what_is_written_today_is_still_of_version_1(tmp_path: Path) -> None:
     old = Result.load(FOSSILS / "result-1.json")
     old.save(tmp_path)
     again = Result.load(tmp_path / "result.json")
-    ResultFile.model_validate(json.loads((tmp_path / "result.json").read_text()))
+    ResultFile.model_validate_json((tmp_path / "result.json").read_text())
     assert again.arm == old.arm
     assert Arm.load(tmp_path / "arm.toml") == old.arm
     assert again.residuals.equals(old.residuals)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from functools import reduce
-from operator import or_
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-from pydantic import Discriminator, Tag
+from typing import Annotated, Any
 
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.bar import Bar
@@ -18,7 +14,7 @@ from ulna.artefacts.points import Points
 from ulna.artefacts.seat import Seat
 from ulna.artefacts.sphere import Sphere
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
-from ulna.formats.models import check_kind
+from ulna.formats.models import OneOf, check_kind
 from ulna.formats.names import check_name
 from ulna.ground.errors import UlnaInputError, nearest
 
@@ -46,25 +42,10 @@ def kind_of(artefact: Artefact) -> Kind:
     return KINDS[artefact.kind]
 
 
-def _tag(table: Any) -> str:
-    return f"<{table.get('kind') if isinstance(table, dict) else getattr(table, 'kind', None)}>"
-
-
-def _any_of(tables: dict[str, type[StatedTable]]) -> Any:
-    """A union of tables told apart by their key `kind`: the same as one written by hand, in models and schemas."""
-    return Annotated[
-        reduce(or_, (Annotated[table, Tag(f"<{name}>")] for name, table in tables.items())), Discriminator(_tag)
-    ]
-
-
-if TYPE_CHECKING:
-    ArtefactTable = StatedTable
-    SimulatedTable = TouchedTable
-else:
-    ArtefactTable = _any_of({name: kind.table for name, kind in KINDS.items()})
-    """The table of an artefact in a study or plan."""
-    SimulatedTable = _any_of({name: kind.simulated for name, kind in KINDS.items()})
-    """The table of an artefact in a simulation file."""
+ArtefactTable = Annotated[StatedTable, OneOf({name: kind.table for name, kind in KINDS.items()})]
+"""The table of an artefact in a study or plan."""
+SimulatedTable = Annotated[TouchedTable, OneOf({name: kind.simulated for name, kind in KINDS.items()})]
+"""The table of an artefact in a simulation file."""
 
 
 def check_kinds(document: dict[str, Any], path: Path) -> None:

@@ -11,11 +11,11 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal, cast
 
 import numpy as np
 
-from ulna.arm.effects.effects import PATTERNS
+from ulna.arm.effects.effects import PATTERNS, Extra
 from ulna.calibration.figures import overall_figures
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import Figures
@@ -48,7 +48,7 @@ SCORES = (
 class JudgedExtra:
     """A block, and what it does for readings that the fit has not seen."""
 
-    extra: str
+    extra: Extra
     figure: str
     """Which figure it was judged by, mean over the groups left out."""
     without_mm: float
@@ -65,10 +65,6 @@ class JudgedExtra:
     verdict: Verdict
     order: int | None = None
     """Of harmonics of several orders: which of them; None: the whole block."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, list `extras`."""
-        return dataclasses.asdict(self)
 
 
 def judge_extras(study: Study, progress: Progress | None = None) -> list[JudgedExtra]:
@@ -156,4 +152,4 @@ def compared(
     verdict: Verdict = "undecided"
     if u is not None and abs(better) > u * stdtrit(len(gains) - 1, CONFIDENCE):
         verdict = "earned" if better > 0 else "not-earned"
-    return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)
+    return JudgedExtra(cast(Extra, extra), figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import polars as pl
@@ -23,7 +23,7 @@ from ulna.calibration.outliers import outliers
 from ulna.calibration.placements import Figures, Placements
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
-from ulna.calibration.summary import FitSummary, Parameter
+from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
 from ulna.study.assembly import Assembled
 from ulna.study.study import Study
 
@@ -125,13 +125,13 @@ class FittedStudy:
         start, value = self.core.start.tolist(), self.core.parameters.tolist()
         rows = []
         for k, (name, unit) in enumerate(zip(names, self.assembled.units, strict=True)):
-            status = "held" if hold[k] else "not-determined" if name in lost else "fitted"
+            status: Status = "held" if hold[k] else "not-determined" if name in lost else "fitted"
             known = status != "not-determined" and np.isfinite(u[k])
             prior_value, prior_u = prior.get(k, (np.nan, np.nan))
             rows.append(
                 Parameter(
                     name=name,
-                    unit=unit,
+                    unit=cast(Unit, unit),
                     start=start[k],
                     value=value[k],
                     u=float(u[k]) if known else None,

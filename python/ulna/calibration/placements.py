@@ -4,15 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import polars as pl
+from pydantic import Field, create_model
 
-from ulna.artefacts.quantities import NAMES
+from ulna.artefacts.quantities import MEANINGS, NAMES
+from ulna.formats.models import Open
 from ulna.ground.arrays import F64
 
 Figures = dict[str, float]
 """Name (of `NAMES`) → mm."""
+
+
+_MEANING = (
+    "What a metrologist reads, from the readings alone, in mm. A figure that the readings do not give is left out."
+)
+
+if TYPE_CHECKING:
+
+    class FigureEntry(Open):
+        """A key for each of `NAMES`."""
+else:
+    _FIELDS = {name: (float | None, Field(None, description=meaning)) for name, meaning in MEANINGS.items()}
+    FigureEntry = create_model("FigureEntry", __base__=Open, __doc__=_MEANING, **_FIELDS)
+
+
+class _OnePlacement(Open):
+    artefact: str
+    placement: str
+    kind: str
+    readings: int
+    """Number of rows."""
+
+
+class PlacementEntry(FigureEntry, _OnePlacement):
+    """The figures of one artefact in one placement."""
 
 
 @dataclass(frozen=True)
@@ -27,21 +54,21 @@ class PlacementFigures:
     figures: Figures
     """Only those of `NAMES` that these readings give, mm."""
 
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json` and `evaluation.json`, list `artefacts`."""
-        return {
-            "artefact": self.artefact,
-            "placement": self.placement,
-            "kind": self.kind,
-            "readings": self.readings,
-            **self.figures,
-        }
-
     @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> PlacementFigures:
-        """The inverse of `as_dict`."""
-        figures = {name: float(entry[name]) for name in NAMES if name in entry}
-        return cls(entry["artefact"], entry["placement"], entry["kind"], entry["readings"], figures)
+    def of_entry(cls, entry: PlacementEntry) -> PlacementFigures:
+        """As a file has it."""
+        return cls(entry.artefact, entry.placement, entry.kind, entry.readings, figures_of(entry))
+
+    def entry(self) -> PlacementEntry:
+        """As files have it."""
+        return PlacementEntry.model_construct(
+            None,
+            artefact=self.artefact,
+            placement=self.placement,
+            kind=self.kind,
+            readings=self.readings,
+            **self.figures,
+        )
 
 
 SCHEMA: dict[str, Any] = {
@@ -65,7 +92,7 @@ class Placements(Sequence[PlacementFigures]):
         """From one entry for each placement."""
         if isinstance(entries, Placements):
             return entries
-        return cls(pl.DataFrame([entry.as_dict() for entry in entries], schema=SCHEMA))
+        return cls(pl.DataFrame([_row(entry) for entry in entries], schema=SCHEMA))
 
     @classmethod
     def of_columns(
@@ -109,6 +136,17 @@ class Placements(Sequence[PlacementFigures]):
 
     def __repr__(self) -> str:
         return f"Placements({list(self[:3])!r}{', …' * (len(self) > 3)})"
+
+
+def figures_of(entry: FigureEntry) -> Figures:
+    """The figures that an entry of a file has."""
+    found = {name: getattr(entry, name) for name in NAMES}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _row(entry: PlacementFigures) -> dict[str, Any]:
+    row = {"artefact": entry.artefact, "placement": entry.placement, "kind": entry.kind, "readings": entry.readings}
+    return row | dict.fromkeys(NAMES) | entry.figures
 
 
 def _of_row(row: Mapping[str, Any]) -> PlacementFigures:

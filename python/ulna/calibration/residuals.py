@@ -3,42 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import polars as pl
 
 from ulna.artefacts.kinds import KINDS, kind_of
 from ulna.artefacts.readings import Readings
+from ulna.formats.models import Open
 from ulna.study.study import Study
 
 if TYPE_CHECKING:
     import ulna._core as _core
 
+
+class ResidualEntry(Open):
+    """One reading. Of point readings x, y, z: tip minus where the feature stands, in the base frame."""
+
+    row: int
+    """Data row of the file, from 1."""
+    file: str
+    artefact: str
+    placement: str
+    feature: str | None = None
+    probe: str
+    x_mm: float | None = None
+    y_mm: float | None = None
+    z_mm: float | None = None
+    length_mm: float | None = None
+    """Of a length row: measured minus stated."""
+    distance_mm: float | None = None
+    """Of a touch of a surface: from it, less the ball's radius."""
+    norm_mm: float
+    """The magnitude."""
+    weight: float
+    """Root of the reading's weight, 1/mm; 1 where no noise is stated."""
+    times_scatter: float | None = None
+    """How far off, in units of the scatter of its artefact's readings, what its placement and the fit took of it made
+    up for."""
+    outlier: bool | None = None
+    """Whether farther off than one normal reading in ten thousand."""
+    counted: float | None = None
+    """What a loss let it count, 0 to 1."""
+
+
+_TYPES: dict[Any, Any] = {int: pl.Int64, str: pl.String, float: pl.Float64, bool: pl.Boolean}
 SCHEMA: dict[str, Any] = {
-    "row": pl.Int64,
-    "file": pl.String,
-    "artefact": pl.String,
-    "placement": pl.String,
-    "feature": pl.String,
-    "probe": pl.String,
-    "x_mm": pl.Float64,
-    "y_mm": pl.Float64,
-    "z_mm": pl.Float64,
-    "length_mm": pl.Float64,
-    "distance_mm": pl.Float64,
-    "norm_mm": pl.Float64,
-    "weight": pl.Float64,
-    "times_scatter": pl.Float64,
-    "outlier": pl.Boolean,
-    "counted": pl.Float64,
+    name: _TYPES[next(iter(get_args(field.annotation)), field.annotation)]
+    for name, field in ResidualEntry.model_fields.items()
 }
-"""`row` counts the file's data rows from 1. Point readings have x, y, z: tip minus where the feature stands, in the
-base frame; length rows have `length_mm`: measured minus stated; touches of surfaces `distance_mm`: from the surface,
-less the ball's radius. `norm_mm` is the magnitude; `weight` is the root of the reading's weight, 1/mm, or 1 where no
-noise is stated. `times_scatter` is how far off the reading is in units of the scatter of its artefact's readings, what
-its placement and the fit took of it made up for; `outlier`: farther than one normal reading in ten thousand. With a
-loss `counted` is what it let the reading count, 0 to 1."""
+"""Of the table: the same columns, null where one does not apply."""
 
 _OWN = sorted({name for kind in KINDS.values() for name in kind.residual_columns})
 """Columns that only some kinds of readings have."""
@@ -60,7 +74,7 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
         # a study made in memory has no files
         "file": _named([file.path.name for file in study.files] or ["in memory"], readings.file),
         "artefact": pl.repeat(artefact.name, rows, eager=True),
-        "placement": pl.Series(readings.placement.tolist(), dtype=pl.String),
+        "placement": _named(readings.labels.names, readings.labels.codes),
         "probe": _named(list(study.arm.probes), readings.probe),
         "weight": fitted.weights(group),
         "times_scatter": fitted.lengths(group),

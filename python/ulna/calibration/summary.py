@@ -1,12 +1,20 @@
-"""What a calibration says of each parameter, and of how the fit ended."""
+"""What a calibration says of each parameter, of how the fit ended, and of a group that was left out.
+
+These are entries of files as they stand (`ulna.calibration.result_file`): a field with a default may be absent in files
+of earlier versions.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import ulna._core as _core
+from ulna.calibration.placements import Figures
+from ulna.study.data import Loss, Method
+
+Unit = Literal["rad", "mm", "1/K", "rad/(N m)"]
+Status = Literal["fitted", "held", "not-determined"]
 
 
 @dataclass(frozen=True)
@@ -15,23 +23,15 @@ class Parameter:
 
     name: str
     """As `joint.3.theta0`, `probe.bent.x`, `joint.3.c1` or `artefact.ball.diameter`."""
-    unit: str
-    """"rad", "mm", "1/K" or "rad/(N m)", of start, value and u."""
+    unit: Unit
+    """Of start, value and u."""
     start: float
     value: float
     u: float | None
     """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
-    status: str
-    """"fitted", "held" or "not-determined"."""
+    status: Status
     prior: dict[str, float] | None = None
     """What was known of it before: value and u, where the fit used it."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, list `parameters`."""
-        entry = asdict(self)
-        if self.prior is None:
-            del entry["prior"]
-        return entry
 
 
 @dataclass(frozen=True)
@@ -55,18 +55,18 @@ class FitSummary:
     """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
     placement_unknowns: int
     degrees_of_freedom: int
-    chi2_per_dof: float | None
+    chi2_per_dof: float | None = None
     """1 where the stated noise is right; None without stated noise."""
-    searched_starts: int
-    search_reason: str
-    folded: list[str]
+    searched_starts: int = 0
+    search_reason: str = ""
+    folded: list[str] = field(default_factory=list)
     undecided_signs: list[list[int]] = field(default_factory=list)
     """Sets of joints that may all count the other way: readings and the arm file do not tell."""
-    method: str = "lm"
+    method: Method = "lm"
     """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
     box_evaluations: int = 0
     """How often that search evaluated the sum of squares."""
-    loss: str = "none"
+    loss: Loss = "none"
     scatter: dict[str, float] = field(default_factory=dict)
     """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
 
@@ -76,16 +76,18 @@ class FitSummary:
         values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name not in more}
         return cls(**(values | more | {"folded": list(fitted.folded)}))
 
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, key `fit`; `chi2_per_dof` is left out where it is not known."""
-        entry = asdict(self)
-        if self.chi2_per_dof is None:
-            del entry["chi2_per_dof"]
-        return entry
 
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> FitSummary:
-        """The inverse of `as_dict`."""
-        values: dict[str, Any] = {"chi2_per_dof": None} | dict(entry)
-        # older files lack the later fields
-        return cls(**{name: values[name] for name in cls.__dataclass_fields__ if name in values})
+@dataclass(frozen=True)
+class GroupFigures:
+    """One group left out."""
+
+    group: str
+    readings: int
+    """Rows left out."""
+    before: Figures
+    after: Figures
+    converged: bool
+    """Whether the fit to the other readings ended well."""
+    termination: str
+    lost: list[dict[str, Any]] = field(default_factory=list)
+    """What the other readings could not determine, as `Identification.lost`."""
