@@ -13,6 +13,8 @@ def main() -> None:
     before = signal.getsignal(signal.SIGINT)
     if before is signal.default_int_handler:  # not where the shell said to ignore it
         signal.signal(signal.SIGINT, _leave)
+    # looking for plug-ins that nobody has for us takes longer than reading a study
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from ulna.cli import main as run
 
     signal.signal(signal.SIGINT, before)

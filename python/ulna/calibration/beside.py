@@ -11,9 +11,6 @@ from ulna.calibration.result_file import TableBeside
 from ulna.formats.table import file_sha256
 from ulna.ground.errors import UlnaInputError
 
-MANY_ROWS = 20_000
-"""A list of more entries than this leaves the JSON file: some 5 MB of text, which nobody reads."""
-
 
 def write_beside(table: pl.DataFrame, path: Path) -> TableBeside:
     """Write the table, and say what the JSON file says of it."""

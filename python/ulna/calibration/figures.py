@@ -27,7 +27,7 @@ LARGEST = [name for quantity in QUANTITIES if quantity.figures == ("largest",) f
 
 
 @dataclass(frozen=True)
-class _Group:
+class GroupErrors:
     """The errors of one artefact's touches, by quantity, and its placements in the order in which they appear."""
 
     readings: Readings
@@ -42,16 +42,21 @@ def figures(arm: Arm, study: Study) -> tuple[Placements, Figures]:
 
     `arm` must carry the study's probes in the study's order. Errors: those of the core for wrong shapes.
     """
-    groups = [_group(arm, study, readings) for readings in study.readings]
-    return Placements.joined([_by_placement(group) for group in groups]), _over_all(groups)
+    groups = group_errors(arm, study)
+    return by_placement(groups), over_all(groups)
 
 
 def overall_figures(arm: Arm, study: Study) -> Figures:
     """The same over all of them together alone."""
-    return _over_all([_group(arm, study, readings) for readings in study.readings])
+    return over_all(group_errors(arm, study))
 
 
-def _group(arm: Arm, study: Study, readings: Readings) -> _Group:
+def group_errors(arm: Arm, study: Study) -> list[GroupErrors]:
+    """The single errors of which figures are made, for each artefact."""
+    return [_group(arm, study, readings) for readings in study.readings]
+
+
+def _group(arm: Arm, study: Study, readings: Readings) -> GroupErrors:
     # one probe for all is much quicker than one for each row
     probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
     warmth = warmth_k(study, arm, readings)
@@ -61,10 +66,11 @@ def _group(arm: Arm, study: Study, readings: Readings) -> _Group:
         second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
     code, labels = readings.labels.as_they_appear()
     tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code)
-    return _Group(readings, labels, code, kind_of(readings.artefact).errors(readings, tips))
+    return GroupErrors(readings, labels, code, kind_of(readings.artefact).errors(readings, tips))
 
 
-def _over_all(groups: Sequence[_Group]) -> Figures:
+def over_all(groups: Sequence[GroupErrors]) -> Figures:
+    """Over all touches and lengths together."""
     found: Figures = {}
     for quantity in QUANTITIES:
         values = [group.errors[quantity.name].value_mm for group in groups if quantity.name in group.errors]
@@ -74,7 +80,12 @@ def _over_all(groups: Sequence[_Group]) -> Figures:
     return found
 
 
-def _by_placement(group: _Group) -> Placements:
+def by_placement(groups: Sequence[GroupErrors]) -> Placements:
+    """Of each placement, in the order in which they appear."""
+    return Placements.joined([_of_group(group) for group in groups])
+
+
+def _of_group(group: GroupErrors) -> Placements:
     columns: dict[str, F64] = {}
     for quantity in QUANTITIES:
         if quantity.name not in group.errors:

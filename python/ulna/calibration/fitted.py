@@ -17,10 +17,9 @@ from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
 from ulna.calibration.estimators import Searched
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import figures, overall_figures
+from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
 from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
-from ulna.calibration.placements import Figures, Placements
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
@@ -53,11 +52,11 @@ class FittedStudy:
             "identifiability": lambda: self._identification,
             "fit": self._summary,
             "residuals": lambda: self._residuals,
-            "artefacts": lambda: self._after[0],
+            "artefacts": lambda: by_placement(self._after),
             "before": lambda: overall_figures(self.assembled.arm, self.study),
-            "after": lambda: self._after[1],
+            "after": lambda: over_all(self._after),
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
-            "outliers": lambda: outliers(self._residuals),
+            "outliers": lambda: outliers(self._residuals) if self._any_outliers() else [],
             "extras": lambda: self.extras,
         }
 
@@ -72,12 +71,15 @@ class FittedStudy:
         return Identification.from_core(self.core.identifiability)
 
     @cached_property
-    def _after(self) -> tuple[Placements, Figures]:
-        return figures(self._arm, self.study)
+    def _after(self) -> list[GroupErrors]:
+        return group_errors(self._arm, self.study)
 
     @cached_property
     def _residuals(self) -> pl.DataFrame:
         return residual_table(self.study, self.core)
+
+    def _any_outliers(self) -> bool:
+        return any(self.core.outliers(group).any() for group in range(len(self.study.readings)))
 
     def _summary(self) -> FitSummary:
         study = self.study

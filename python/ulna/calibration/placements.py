@@ -99,12 +99,17 @@ class Placements(Sequence[PlacementFigures]):
         cls, artefact: str, kind: str, placements: Sequence[str], readings: Any, columns: Mapping[str, F64]
     ) -> Placements:
         """Those of one artefact. readings: (P,) numbers of rows; columns: figure → (P,), NaN where there is none."""
-        rows = len(placements)
-        table = pl.DataFrame({"placement": pl.Series(placements, dtype=pl.String), "readings": readings})
-        given = [pl.Series(name, column, nan_to_null=True) for name, column in columns.items()]
-        lacking = [pl.repeat(None, rows, dtype=pl.Float64, eager=True).alias(n) for n in NAMES if n not in columns]
-        table = table.with_columns(pl.lit(artefact).alias("artefact"), pl.lit(kind).alias("kind"), *given, *lacking)
-        return cls(table.select(pl.col(name).cast(dtype) for name, dtype in SCHEMA.items()))
+        alike: dict[str, str] = {"artefact": artefact, "kind": kind}
+        table = pl.DataFrame(
+            {"placement": pl.Series(placements, dtype=pl.String), "readings": readings}
+            | {name: pl.Series(column, nan_to_null=True) for name, column in columns.items()}
+        )
+        return cls(
+            table.select(
+                pl.col(name).cast(dtype) if name in table.columns else pl.lit(alike.get(name), dtype).alias(name)
+                for name, dtype in SCHEMA.items()
+            )
+        )
 
     @classmethod
     def joined(cls, parts: Sequence[Placements]) -> Placements:

@@ -73,7 +73,7 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
         "row": readings.row,
         # a study made in memory has no files
         "file": _named([file.path.name for file in study.files] or ["in memory"], readings.file),
-        "artefact": pl.repeat(artefact.name, rows, eager=True),
+        "artefact": _named([artefact.name], np.zeros(rows, dtype=np.int64)),
         "placement": _named(readings.labels.names, readings.labels.codes),
         "probe": _named(list(study.arm.probes), readings.probe),
         "weight": fitted.weights(group),
@@ -88,8 +88,10 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
     own = [name for name in kind.residual_columns if name != "feature"]
     columns |= {name: residual_mm[:, k] for k, name in enumerate(own)}
     columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
-    missing = {name: pl.repeat(None, rows, dtype=dtype, eager=True) for name, dtype in SCHEMA.items()}
-    return pl.DataFrame({name: columns.get(name, missing[name]) for name in SCHEMA}, schema=SCHEMA)
+    return pl.DataFrame(columns).select(
+        pl.col(name).cast(dtype) if name in columns else pl.lit(None, dtype).alias(name)
+        for name, dtype in SCHEMA.items()
+    )
 
 
 def _named(names: Sequence[str], index: Any) -> pl.Series:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import polars as pl
@@ -19,13 +19,11 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import covariance_of_result
 from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.probes import ProbeView, probe_views
-from ulna.calibration.beside import MANY_ROWS, read_beside, write_beside
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures, Placements, figures_of
 from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
-from ulna.calibration.result_file import CovarianceEntry, OutlierEntry, OverallEntry, ProvenanceEntry, ResultFile
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.models import fill_json
 from ulna.formats.output import output_folder
@@ -33,7 +31,15 @@ from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.on_demand import OnDemand
 
+if TYPE_CHECKING:
+    from ulna.calibration.result_file import ResultFile
+
+# The files' models are loaded where there is a file: making them takes longer than many a fit.
+
 FORMAT: Literal["ulna-result/1"] = "ulna-result/1"
+MANY_ROWS = 20_000
+"""A list of more entries than this leaves `result.json`: some 5 MB of text, which nobody reads."""
+
 RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
 FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
 """All that a result may be written to."""
@@ -73,6 +79,14 @@ class Result(OnDemand):
 
     def file(self) -> ResultFile:
         """`result.json` as its model, its arm and residuals aside."""
+        from ulna.calibration.result_file import (
+            CovarianceEntry,
+            OutlierEntry,
+            OverallEntry,
+            ProvenanceEntry,
+            ResultFile,
+        )
+
         return ResultFile.model_construct(
             format=FORMAT,
             parameters=self.parameters,
@@ -104,6 +118,8 @@ class Result(OnDemand):
 
         Raises UlnaInputError where one of them exists and `force` is not given, or the folder cannot be written.
         """
+        from ulna.calibration.beside import write_beside
+
         many = len(self.residuals) > MANY_ROWS
         many_placements = len(self.artefacts) > MANY_ROWS
         written = ["result.json", "arm.toml", RESIDUALS if many else "residuals.csv"]
@@ -124,6 +140,8 @@ class Result(OnDemand):
     def load(cls, path: str | Path) -> Result:
         """Read a `result.json`, or the one in a folder. Tables beside it are read when they are asked for. Raises
         UlnaInputError."""
+        from ulna.calibration.result_file import ResultFile
+
         path = Path(path)
         path = path / "result.json" if path.is_dir() else path
         document, _ = read_json(path, "a result.json")
@@ -151,6 +169,8 @@ class Result(OnDemand):
 
 
 def _placements(file: ResultFile, path: Path) -> Sequence[PlacementFigures]:
+    from ulna.calibration.beside import read_beside
+
     if file.artefacts_file is not None:
         return Placements(read_beside(file.artefacts_file, path, PLACEMENT_SCHEMA))
     return [PlacementFigures.of_entry(entry) for entry in file.artefacts]
@@ -158,6 +178,8 @@ def _placements(file: ResultFile, path: Path) -> Sequence[PlacementFigures]:
 
 def _residuals(file: ResultFile, rows: Any, path: Path) -> Callable[[], pl.DataFrame]:
     """The table; what stands in the file itself is looked at now. Raises UlnaInputError."""
+    from ulna.calibration.beside import read_beside
+
     beside = file.residuals_file
     if beside is not None:
         return lambda: read_beside(beside, path, SCHEMA)
