@@ -6,8 +6,9 @@ import time
 import numpy as np
 
 import ulna._core as _core
+from benchmarks.lengths import F64, HELD, Lengths
 from benchmarks.peers import Contender, Times
-from benchmarks.readings import ENCODER_NOISE_RAD, F64, FOUND, HELD, START, TRUTH, Lengths, lengths
+from benchmarks.readings import ENCODER_NOISE_RAD, FOUND, START, TRUTH, lengths
 from benchmarks.tasks import REPEATED_FITS, REPEATED_LENGTHS, measure_functions
 
 

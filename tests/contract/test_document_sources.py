@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 from tests.cli_runs import write_lengths
+from tests.documents.test_acceptance import document as verification_document
 from tests.reports import calibrated
-from tests.test_document_tested import document as verification_document
 
 import ulna
 from ulna import UlnaInputError

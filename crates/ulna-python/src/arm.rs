@@ -10,7 +10,7 @@ use numpy::{
 use pyo3::prelude::*;
 use std::borrow::Cow;
 use ulna::arm::{Compliance, Effects, Expansion};
-use ulna::inverse::{Limits, postures_for_points};
+use ulna::kinematics::inverse::{Limits, postures_for_points};
 use ulna::kinematics::{self, Angles, Chain, Poses, batch};
 use ulna::simd::Columns;
 
@@ -252,7 +252,8 @@ impl Arm {
             return Err(UlnaError::new_err("the covariance is not square"));
         }
         let poses = read.angles();
-        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, poses, &columns, &covariance));
+        let out =
+            py.detach(|| ulna::kinematics::propagate::tip_covariance(&self.inner, probe, poses, &columns, &covariance));
         array2(py, out, 6)
     }
 
@@ -270,7 +271,8 @@ impl Arm {
         let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref())?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
         let poses = read.angles();
-        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, poses, &columns, &directions));
+        let out = py
+            .detach(|| ulna::kinematics::propagate::direction_effect(&self.inner, probe, poses, &columns, &directions));
         Ok(array1(py, &out))
     }
 
@@ -312,7 +314,7 @@ impl Arm {
     ) -> PyResult<f64> {
         self.probe(probe)?;
         let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
-        Ok(ulna::propagate::check_jacobian(&self.inner, probe, read.angles()))
+        Ok(ulna::kinematics::propagate::check_jacobian(&self.inner, probe, read.angles()))
     }
 }
 

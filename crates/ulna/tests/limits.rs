@@ -3,9 +3,9 @@
 mod common;
 
 use common::{any_arm, rng};
+use ulna::artefacts::Noise;
+use ulna::artefacts::length::LengthRows;
 use ulna::problem::Problem;
-use ulna::residuals::Noise;
-use ulna::residuals::length::LengthRows;
 
 #[test]
 fn an_arm_of_absurd_size_is_refused() {

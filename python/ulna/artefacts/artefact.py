@@ -5,19 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-ArtefactKind = Literal["bar", "seat", "points", "length", "sphere", "plane"]
-
-
-SURFACES = ("sphere", "plane")
-"""Kinds that are touched with the ball of the tip on their surface."""
-
 
 @dataclass(frozen=True)
 class Artefact:
     """A set of features with calibrated coordinates: what the arm touches."""
 
     name: str
-    kind: ArtefactKind
+    kind: str
+    """One of `ulna.artefacts.kinds.KINDS`."""
     features: dict[str, tuple[float, float, float]]
     """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; others: none."""
     length_mm: float | None = None
@@ -30,9 +25,11 @@ class Artefact:
     feature_u_mm: tuple[float, ...] | None = None
     """points only: standard uncertainty of the coordinates of each feature, in the order of `features`."""
     diameter_mm: float | None = None
-    """sphere only."""
+    """Of what is round."""
     inside: bool = False
-    """sphere only: a hollow, touched from within."""
+    """Of what is round: a hollow, touched from within."""
     fitted: bool = False
-    """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a sphere's
-    diameter of which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
+    """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a diameter of
+    which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
+    own: object = None
+    """What only its kind knows of it, as a record of the kind's own file."""

@@ -1,15 +1,18 @@
-"""The table of features that an artefact may name: which columns it has, and how it is written."""
+"""The table of features that an artefact may name: which columns it has, how it is written, what it says."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 
+from ulna.artefacts.readings import InputFile
+from ulna.artefacts.tables import Place
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout, TableKeys
-from ulna.formats.table import read_header
+from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
@@ -44,3 +47,39 @@ def uncertainties(header: Header, frame: pl.DataFrame, row: I64) -> F64:
             "or more. Correct it."
         )
     return u
+
+
+@dataclass(frozen=True)
+class FeaturesFile:
+    """What a table of features says."""
+
+    features_mm: dict[str, tuple[float, float, float]]
+    u_mm: tuple[float, ...] | None
+    """Of each feature; None where the file has no such column."""
+
+
+def features_of_file(file: Path, keys: TableKeys | None, key: str, place: Place) -> FeaturesFile:
+    """Read a table of features; it is added to the files of `place`. `key`: `artefact.plate`. Raises UlnaInputError."""
+    mm = place.units.mm
+    header = open_features(file, keys, key, place.path, place.remarks)
+    frame = read_table(
+        header, lambda column: column != "feature", [column for column in COLUMNS if column in header.columns]
+    )
+    names = frame["feature"].to_list()
+    rows: dict[str, int] = {}
+    for row, feature in enumerate(names, start=1):
+        if feature in rows:
+            raise UlnaInputError(
+                f"{file}: {header.at(row, 'feature')}: '{feature}' stands in row {rows[feature]} already; "
+                "expected each feature once. Rename or remove one."
+            )
+        rows[feature] = row
+    if not rows:
+        raise UlnaInputError(f"{file}: there are no rows; expected one per feature. Add them.")
+    xyz_mm = (frame.select("x", "y", "z").to_numpy() * mm).tolist()
+    features = {feature: (x, y, z) for feature, (x, y, z) in zip(names, xyz_mm, strict=True)}
+    u_mm: tuple[float, ...] | None = None
+    if "u" in frame.columns:
+        u_mm = tuple((uncertainties(header, frame, np.arange(1, len(frame) + 1)) * mm).tolist())
+    place.files.append(InputFile(file, file_sha256(file), len(frame)))
+    return FeaturesFile(features, u_mm)

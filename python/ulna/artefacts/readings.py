@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.labels import Labels
 from ulna.ground.arrays import F64, I64, Bool
 
 
@@ -38,8 +39,8 @@ class Readings:
     """(N,) index into the arm's probes."""
     feature: I64
     """(N,) index into the artefact's features, in their order; 0 for length rows."""
-    placement: NDArray[np.object_]
-    """(N,) str labels; equal means the same standing of the artefact."""
+    placement: Labels | NDArray[np.object_]
+    """(N,) str labels; equal means the same standing of the artefact. Kept as `Labels`, whatever sequence is given."""
     row: I64
     """(N,) data row in its file, counted from 1, the header not counted."""
     file: I64
@@ -49,8 +50,16 @@ class Readings:
     temperature_c: F64 | None = None
     """(N,) or (N, n), °C."""
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, Labels.of(value) if name == "placement" else value)
+
     def __len__(self) -> int:
         return len(self.q_rad)
+
+    @property
+    def labels(self) -> Labels:
+        """`placement`, as it is kept."""
+        return Labels.of(self.placement)
 
     def select(self, mask: Bool | I64) -> Readings:
         """The rows of a mask (N,) or of indices, in order."""
@@ -75,5 +84,4 @@ class Readings:
     @property
     def placement_code(self) -> I64:
         """(N,) a number for each placement label, counted in the order in which they appear."""
-        seen: dict[str, int] = {}
-        return np.fromiter((seen.setdefault(label, len(seen)) for label in self.placement), np.int64, len(self))
+        return self.labels.as_they_appear()[0]

@@ -10,18 +10,21 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibration.figures import Figures, figures, over_groups
+from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.placements import FigureEntry, Figures
 from ulna.calibration.provenance import provenance
+from ulna.calibration.result_file import CrossValidationFile, ProvenanceEntry
 from ulna.calibration.running import run_fit
+from ulna.calibration.summary import GroupFigures
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
@@ -29,29 +32,9 @@ from ulna.study.options import with_options
 from ulna.study.parameters import hold_mask
 from ulna.study.study import Study
 
-FORMAT = "ulna-cross-validation/1"
+FORMAT: Literal["ulna-cross-validation/1"] = "ulna-cross-validation/1"
 FILES = ("cross-validation.json",)
 Progress = Callable[[str, int, int], None]
-
-
-@dataclass(frozen=True)
-class GroupFigures:
-    """One group left out."""
-
-    group: str
-    readings: int
-    """Rows left out."""
-    before: Figures
-    after: Figures
-    converged: bool
-    """Whether the fit to the other readings ended well."""
-    termination: str
-    lost: list[dict[str, Any]] = field(default_factory=list)
-    """What the other readings could not determine, as `Identification.lost`."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `cross-validation.json`, list `groups`."""
-        return dataclasses.asdict(self)
 
 
 @dataclass
@@ -73,14 +56,14 @@ class CrossValidation:
 
     def as_dict(self) -> dict[str, Any]:
         """`cross-validation.json`: JSON types only, no NaN."""
-        return {
-            "format": FORMAT,
-            "by": self.by,
-            "groups": [group.as_dict() for group in self.groups],
-            "before": self.before,
-            "after": self.after,
-            "provenance": self.provenance,
-        }
+        return CrossValidationFile.model_construct(
+            format=FORMAT,
+            by=self.by,
+            groups=self.groups,
+            before=FigureEntry.model_construct(None, **self.before),
+            after=FigureEntry.model_construct(None, **self.after),
+            provenance=ProvenanceEntry.model_construct(None, **self.provenance),
+        ).model_dump(mode="json", exclude_unset=True)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `cross-validation.json` into a folder. Raises UlnaInputError."""
@@ -136,8 +119,8 @@ def _judge(study: Study, fold: Fold) -> GroupFigures:
         raise UlnaInputError(f"without {fold.name} ({fold.rows} readings left out): {error}") from None
     arm = start_arm.with_signs(fitted.arm.signs)
     of_arm = len(arm.parameter_names)
-    _, before = figures(arm.with_parameters(start.parameters[:of_arm]), test)
-    _, after = figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
+    before = overall_figures(arm.with_parameters(start.parameters[:of_arm]), test)
+    after = overall_figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
     return GroupFigures(
         group=fold.name,
         readings=fold.rows,

@@ -4,26 +4,28 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
-from ulna.calibration.figures import Figures, PlacementFigures, figures
+from ulna.calibration.figures import figures
+from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
+from ulna.calibration.result_file import EvaluatedEntry, EvaluationFile, ProvenanceEntry
 from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.study.data import FitOptions
 from ulna.study.study import Study
 
-FORMAT = "ulna-evaluation/1"
+FORMAT: Literal["ulna-evaluation/1"] = "ulna-evaluation/1"
 FILES = ("evaluation.json", "residuals.csv")
 
 
@@ -32,7 +34,7 @@ class Evaluation:
     """What an arm makes of readings."""
 
     arm: Arm
-    artefacts: list[PlacementFigures]
+    artefacts: Sequence[PlacementFigures]
     """Per artefact and placement, from the readings alone."""
     overall: Figures
     """The same over all touches and lengths together."""
@@ -45,15 +47,15 @@ class Evaluation:
 
     def as_dict(self) -> dict[str, Any]:
         """`evaluation.json`: JSON types only, no NaN."""
-        return {
-            "format": FORMAT,
-            "arm": self.arm.name,
-            "parameters": dict(zip(self.arm.parameter_names, self.arm.parameters.tolist(), strict=True)),
-            "artefacts": [entry.as_dict() for entry in self.artefacts],
-            "overall": self.overall,
-            "fit": {"readings": self.readings, "rms_mm": self.rms_mm},
-            "provenance": self.provenance,
-        }
+        return EvaluationFile.model_construct(
+            format=FORMAT,
+            arm=self.arm.name,
+            parameters=dict(zip(self.arm.parameter_names, self.arm.parameters.tolist(), strict=True)),
+            artefacts=[entry.entry() for entry in self.artefacts],
+            overall=FigureEntry.model_construct(None, **self.overall),
+            fit=EvaluatedEntry.model_construct(readings=self.readings, rms_mm=self.rms_mm),
+            provenance=ProvenanceEntry.model_construct(None, **self.provenance),
+        ).model_dump(mode="json", exclude_unset=True)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `evaluation.json` and `residuals.csv` into a folder: both or none. Raises UlnaInputError."""

@@ -11,14 +11,14 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal, cast
 
 import numpy as np
-from scipy.special import stdtrit
 
-from ulna.arm.effects.effects import PATTERNS
-from ulna.calibration.figures import Figures, figures
+from ulna.arm.effects.effects import PATTERNS, Extra
+from ulna.calibration.figures import overall_figures
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.placements import Figures
 from ulna.calibration.running import run_fit
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
@@ -48,7 +48,7 @@ SCORES = (
 class JudgedExtra:
     """A block, and what it does for readings that the fit has not seen."""
 
-    extra: str
+    extra: Extra
     figure: str
     """Which figure it was judged by, mean over the groups left out."""
     without_mm: float
@@ -65,10 +65,6 @@ class JudgedExtra:
     verdict: Verdict
     order: int | None = None
     """Of harmonics of several orders: which of them; None: the whole block."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, list `extras`."""
-        return dataclasses.asdict(self)
 
 
 def judge_extras(study: Study, progress: Progress | None = None) -> list[JudgedExtra]:
@@ -134,7 +130,7 @@ def _left_out(study: Study, fold: Fold, told: _Told) -> Figures:
     fitted = run_fit(training)
     arm = assembled_arm.with_signs(fitted.arm.signs)
     told()
-    return figures(arm.with_parameters(fitted.parameters[: len(arm.parameter_names)]), test)[1]
+    return overall_figures(arm.with_parameters(fitted.parameters[: len(arm.parameter_names)]), test)
 
 
 def compared(
@@ -148,10 +144,12 @@ def compared(
     else:
         return None
     without_mm, with_mm = np.array(pairs).mean(axis=0).tolist()
+    from scipy.special import stdtrit  # longer to load than most fits take, and most studies judge no block
+
     gains = np.array([a - b for a, b in pairs])
     better = float(gains.mean())
     u = float(gains.std(ddof=1) / np.sqrt(len(gains))) if len(gains) > 1 else None
     verdict: Verdict = "undecided"
     if u is not None and abs(better) > u * stdtrit(len(gains) - 1, CONFIDENCE):
         verdict = "earned" if better > 0 else "not-earned"
-    return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)
+    return JudgedExtra(cast(Extra, extra), figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.calibration.figures import placements
+from ulna.artefacts.kinds import kind_of
 from ulna.ground.errors import UlnaInputError
 from ulna.study.study import Study
 
@@ -59,7 +59,7 @@ def _by_placement(study: Study) -> list[Fold]:
     several = len(study.readings) > 1
     found = []
     for k, readings in enumerate(study.readings):
-        labels, code = placements(readings)
+        code, labels = readings.labels.as_they_appear()
         for number, label in enumerate(labels):
             masks = [np.zeros(len(other), dtype=bool) for other in study.readings]
             masks[k] = code == number
@@ -98,7 +98,7 @@ def _dealt_units(study: Study) -> tuple[list[I64], int, str]:
     except of a bar: with single readings left out it would lose an end, and with it the length that is judged.
     """
     units, count = _standings(study)
-    if count >= 2 or any(readings.artefact.kind == "bar" for readings in study.readings):
+    if count >= 2 or any(kind_of(readings.artefact).indivisible for readings in study.readings):
         return units, count, "placements"
     return *_single_readings(study), "readings"
 
@@ -108,8 +108,8 @@ def _standings(study: Study) -> tuple[list[I64], int]:
     units: list[I64] = []
     total = 0
     for readings in study.readings:
-        alone = readings.artefact.kind == "length" or readings.artefact.frame == "arm"
-        code = np.arange(len(readings)) if alone else placements(readings)[1]
+        placed = kind_of(readings.artefact).placed(readings.artefact)
+        code = readings.placement_code if placed else np.arange(len(readings))
         units.append(code + total)
         total += int(code.max()) + 1 if len(code) else 0
     return units, total

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -56,14 +55,8 @@ class Identification:
             from_prior=list(found.from_prior),
         )
 
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> Identification:
-        """The inverse of `as_dict`."""
-        values = {"from_prior": []} | dict(entry)  # older files know no priors
-        return cls(**{name: values[name] for name in cls.__dataclass_fields__})
-
     def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, key `identifiability`."""
+        """JSON types only."""
         return asdict(self)
 
 

@@ -3,45 +3,59 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import polars as pl
 
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import KINDS, kind_of
 from ulna.artefacts.readings import Readings
+from ulna.formats.models import Open
 from ulna.study.study import Study
 
 if TYPE_CHECKING:
     import ulna._core as _core
 
-SCHEMA: dict[str, Any] = {
-    "row": pl.Int64,
-    "file": pl.String,
-    "artefact": pl.String,
-    "placement": pl.String,
-    "feature": pl.String,
-    "probe": pl.String,
-    "x_mm": pl.Float64,
-    "y_mm": pl.Float64,
-    "z_mm": pl.Float64,
-    "length_mm": pl.Float64,
-    "distance_mm": pl.Float64,
-    "norm_mm": pl.Float64,
-    "weight": pl.Float64,
-    "times_scatter": pl.Float64,
-    "outlier": pl.Boolean,
-    "counted": pl.Float64,
-}
-"""`row` counts the file's data rows from 1. Point readings have x, y, z: tip minus where the feature stands, in the
-base frame; length rows have `length_mm`: measured minus stated; touches of surfaces `distance_mm`: from the surface,
-less the ball's radius. `norm_mm` is the magnitude; `weight` is the root of the reading's weight, 1/mm, or 1 where no
-noise is stated. `times_scatter` is how far off the reading is in units of the scatter of its artefact's readings, what
-its placement and the fit took of it made up for; `outlier`: farther than one normal reading in ten thousand. With a
-loss `counted` is what it let the reading count, 0 to 1."""
 
-_OWN = {"length": ("length_mm",), "surface": ("distance_mm",), "point": ("feature", "x_mm", "y_mm", "z_mm")}
-"""Columns that only one kind of reading has."""
+class ResidualEntry(Open):
+    """One reading. Of point readings x, y, z: tip minus where the feature stands, in the base frame."""
+
+    row: int
+    """Data row of the file, from 1."""
+    file: str
+    artefact: str
+    placement: str
+    feature: str | None = None
+    probe: str
+    x_mm: float | None = None
+    y_mm: float | None = None
+    z_mm: float | None = None
+    length_mm: float | None = None
+    """Of a length row: measured minus stated."""
+    distance_mm: float | None = None
+    """Of a touch of a surface: from it, less the ball's radius."""
+    norm_mm: float
+    """The magnitude."""
+    weight: float
+    """Root of the reading's weight, 1/mm; 1 where no noise is stated."""
+    times_scatter: float | None = None
+    """How far off, in units of the scatter of its artefact's readings, what its placement and the fit took of it made
+    up for."""
+    outlier: bool | None = None
+    """Whether farther off than one normal reading in ten thousand."""
+    counted: float | None = None
+    """What a loss let it count, 0 to 1."""
+
+
+_TYPES: dict[Any, Any] = {int: pl.Int64, str: pl.String, float: pl.Float64, bool: pl.Boolean}
+SCHEMA: dict[str, Any] = {
+    name: _TYPES[next(iter(get_args(field.annotation)), field.annotation)]
+    for name, field in ResidualEntry.model_fields.items()
+}
+"""Of the table: the same columns, null where one does not apply."""
+
+_OWN = sorted({name for kind in KINDS.values() for name in kind.residual_columns})
+"""Columns that only some kinds of readings have."""
 _CHUNK_ROWS = 100_000
 
 
@@ -60,7 +74,7 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
         # a study made in memory has no files
         "file": _named([file.path.name for file in study.files] or ["in memory"], readings.file),
         "artefact": pl.repeat(artefact.name, rows, eager=True),
-        "placement": pl.Series(readings.placement.tolist(), dtype=pl.String),
+        "placement": _named(readings.labels.names, readings.labels.codes),
         "probe": _named(list(study.arm.probes), readings.probe),
         "weight": fitted.weights(group),
         "times_scatter": fitted.lengths(group),
@@ -68,13 +82,12 @@ def _group_table(study: Study, readings: Readings, fitted: _core.Fitted, group: 
     }
     if counted is not None:
         columns["counted"] = counted
-    if artefact.kind == "length" or artefact.kind in SURFACES:
-        columns["length_mm" if artefact.kind == "length" else "distance_mm"] = residual_mm[:, 0]
-        columns["norm_mm"] = np.abs(residual_mm[:, 0])
-    else:
+    kind = kind_of(artefact)
+    if kind.named:
         columns["feature"] = _named(list(artefact.features), readings.feature)
-        columns |= {f"{axis}_mm": residual_mm[:, k] for k, axis in enumerate("xyz")}
-        columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
+    own = [name for name in kind.residual_columns if name != "feature"]
+    columns |= {name: residual_mm[:, k] for k, name in enumerate(own)}
+    columns["norm_mm"] = np.linalg.norm(residual_mm, axis=1)
     missing = {name: pl.repeat(None, rows, dtype=dtype, eager=True) for name, dtype in SCHEMA.items()}
     return pl.DataFrame({name: columns.get(name, missing[name]) for name in SCHEMA}, schema=SCHEMA)
 
@@ -88,21 +101,10 @@ def json_rows(table: pl.DataFrame) -> Iterator[str]:
     between = ""
     for start in range(0, table.height, _CHUNK_ROWS):
         chunk = table.slice(start, _CHUNK_ROWS)
-        # runs of one kind, so that each object has just the keys of its kind
-        kind = (
-            pl.when(pl.col("length_mm").is_not_null())
-            .then(pl.lit("length"))
-            .when(pl.col("distance_mm").is_not_null())
-            .then(pl.lit("surface"))
-            .otherwise(pl.lit("point"))
-        )
-        for run in (
-            chunk.with_columns(kind.alias("_kind"))
-            .with_columns(pl.col("_kind").rle_id().alias("_run"))
-            .partition_by("_run", include_key=False)
-        ):
-            lacking = [name for other, names in _OWN.items() if other != run["_kind"][0] for name in names]
-            lacking += ["_kind", *(["counted"] if run["counted"].is_null().all() else [])]
+        # runs of rows that have the same columns, so that each object has just the keys that it needs
+        runs = pl.struct(pl.col(*_OWN).is_null()).rle_id().alias("_run")
+        for run in chunk.with_columns(runs).partition_by("_run", include_key=False):
+            lacking = [name for name in (*_OWN, "counted") if run[name].is_null().all()]
             yield between + run.drop(lacking).write_ndjson().rstrip("\n").replace("\n", ",\n")
             between = ",\n"
 

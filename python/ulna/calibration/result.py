@@ -1,13 +1,15 @@
-"""The result of a calibration, in memory and as files: `result.json` (`ulna-result/1`), `arm.toml`, `residuals.csv`."""
+"""The result of a calibration, in memory and as files: `result.json` (`ulna-result/1`), `arm.toml`, residuals."""
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
 import numpy as np
 import polars as pl
@@ -17,105 +19,31 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import covariance_of_result
 from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.probes import ProbeView, probe_views
+from ulna.calibration.beside import MANY_ROWS, read_beside, write_beside
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import Figures, PlacementFigures
 from ulna.calibration.identify import Identification
-from ulna.calibration.residuals import from_json_rows, json_rows
+from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
+from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures, Placements, figures_of
+from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
+from ulna.calibration.result_file import CovarianceEntry, OutlierEntry, OverallEntry, ProvenanceEntry, ResultFile
+from ulna.calibration.summary import FitSummary, Parameter
+from ulna.formats.models import fill_json
 from ulna.formats.output import output_folder
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.on_demand import OnDemand
 
-if TYPE_CHECKING:
-    import ulna._core as _core
+FORMAT: Literal["ulna-result/1"] = "ulna-result/1"
+RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
+FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
+"""All that a result may be written to."""
 
-FORMAT = "ulna-result/1"
-FILES = ("result.json", "arm.toml", "residuals.csv")
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One parameter of the arm before and after."""
-
-    name: str
-    """As `joint.3.theta0`, `probe.bent.x`, `joint.3.c1` or `artefact.ball.diameter`."""
-    unit: str
-    """"rad", "mm", "1/K" or "rad/(N m)", of start, value and u."""
-    start: float
-    value: float
-    u: float | None
-    """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
-    status: str
-    """"fitted", "held" or "not-determined"."""
-    prior: dict[str, float] | None = None
-    """What was known of it before: value and u, where the fit used it."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, list `parameters`."""
-        entry = asdict(self)
-        if self.prior is None:
-            del entry["prior"]
-        return entry
-
-
-@dataclass(frozen=True)
-class FitSummary:
-    """How the fit ended."""
-
-    termination: str
-    """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
-    "max-iterations", "poor-minimum"."""
-    converged: bool
-    iterations: int
-    evaluations: int
-    cost_start: float
-    """Sum of squares of the whitened residuals at the start; mm² where no noise is stated."""
-    cost: float
-    rms_start_mm: float
-    """Root of the mean of the squared norms of the readings' residuals, unweighted."""
-    rms_mm: float
-    readings: int
-    observations: int
-    """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
-    placement_unknowns: int
-    degrees_of_freedom: int
-    chi2_per_dof: float | None
-    """1 where the stated noise is right; None without stated noise."""
-    searched_starts: int
-    search_reason: str
-    folded: list[str]
-    undecided_signs: list[list[int]] = field(default_factory=list)
-    """Sets of joints that may all count the other way: readings and the arm file do not tell."""
-    method: str = "lm"
-    """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
-    box_evaluations: int = 0
-    """How often that search evaluated the sum of squares."""
-    loss: str = "none"
-    scatter: dict[str, float] = field(default_factory=dict)
-    """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
-
-    @classmethod
-    def from_core(cls, fitted: _core.Fitted, **more: Any) -> FitSummary:
-        """Copy out of the core; `more` are the fields that it does not know."""
-        values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name not in more}
-        return cls(**(values | more | {"folded": list(fitted.folded)}))
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in `result.json`, key `fit`; `chi2_per_dof` is left out where it is not known."""
-        entry = asdict(self)
-        if self.chi2_per_dof is None:
-            del entry["chi2_per_dof"]
-        return entry
-
-    @classmethod
-    def from_dict(cls, entry: Mapping[str, Any]) -> FitSummary:
-        """The inverse of `as_dict`."""
-        values: dict[str, Any] = {"chi2_per_dof": None} | dict(entry)
-        # older files lack the later fields
-        return cls(**{name: values[name] for name in cls.__dataclass_fields__ if name in values})
+AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras")
+"""Fields that are the same in the file and in memory."""
 
 
 @dataclass
-class Result:
+class Result(OnDemand):
     """A calibrated arm and everything that is known about it."""
 
     arm: Arm
@@ -126,7 +54,7 @@ class Result:
     fit: FitSummary
     residuals: pl.DataFrame
     """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
-    artefacts: list[PlacementFigures]
+    artefacts: Sequence[PlacementFigures]
     """What a metrologist reads, of the calibrated arm, from the fitted readings alone."""
     before: Figures
     """The same over all placements, of the arm that the fit started from."""
@@ -143,70 +71,125 @@ class Result:
         """Each probe's tip as x, y, z and as theta0, r, h, with standard uncertainties."""
         return probe_views(self.arm, {row.name: row.status for row in self.parameters}, self.covariance)
 
-    def head(self) -> dict[str, Any]:
-        """`result.json` without the residuals: JSON types only, no NaN."""
-        return {
-            "format": FORMAT,
-            "arm": arm_document(self.arm),
-            "parameters": [row.as_dict() for row in self.parameters],
-            "probes": {view.name: view.as_dict() for view in self.probes},
-            "covariance": {"names": self.covariance.names, "matrix": _json_matrix(self.covariance.matrix)},
-            "identifiability": self.identifiability.as_dict(),
-            "fit": self.fit.as_dict(),
-            "outliers": self.outliers,
-            "extras": [entry.as_dict() for entry in self.extras],
-            "artefacts": [entry.as_dict() for entry in self.artefacts],
-            "overall": {"before": self.before, "after": self.after},
-            "provenance": self.provenance,
-        }
+    def file(self) -> ResultFile:
+        """`result.json` as its model, its arm and residuals aside."""
+        return ResultFile.model_construct(
+            format=FORMAT,
+            parameters=self.parameters,
+            probes={view.name: view.as_dict() for view in self.probes},
+            covariance=CovarianceEntry.model_construct(
+                names=self.covariance.names, matrix=_json_matrix(self.covariance.matrix)
+            ),
+            identifiability=self.identifiability,
+            fit=self.fit,
+            outliers=[OutlierEntry.model_construct(None, **entry) for entry in self.outliers],
+            extras=self.extras,
+            artefacts=[entry.entry() for entry in self.artefacts],
+            overall=OverallEntry.model_construct(
+                before=FigureEntry.model_construct(None, **self.before),
+                after=FigureEntry.model_construct(None, **self.after),
+            ),
+            provenance=ProvenanceEntry.model_construct(None, **self.provenance),
+        )
 
-    def write_json(self, write: Any) -> None:
-        """Hand `result.json` piece by piece to `write`; memory stays bounded for any number of readings."""
-        text = json.dumps(self.head(), indent=1, ensure_ascii=False, allow_nan=False)
-        write(text.removesuffix("\n}") + ',\n "residuals": [\n')
-        for piece in json_rows(self.residuals):
-            write(piece)
-        write("\n ]\n}\n")
+    def write_json(self, write: Callable[[str], Any]) -> None:
+        """Hand `result.json` piece by piece to `write`, every list in it."""
+        _write(self, self.file(), write, residuals=True)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `result.json`, `arm.toml` and `residuals.csv` into a folder: all of them or none.
 
+        Of more than `MANY_ROWS` readings the residuals go to `residuals.parquet` instead, of as many placements their
+        figures to `artefacts.parquet`; `result.json` names both.
+
         Raises UlnaInputError where one of them exists and `force` is not given, or the folder cannot be written.
         """
-        with output_folder(folder, FILES, force) as staging:
-            with (staging / "result.json").open("w", encoding="utf-8") as file:
-                self.write_json(file.write)
-            (staging / "arm.toml").write_text(arm_toml(self.arm), encoding="utf-8")
-            self.residuals.write_csv(staging / "residuals.csv")
+        many = len(self.residuals) > MANY_ROWS
+        many_placements = len(self.artefacts) > MANY_ROWS
+        written = ["result.json", "arm.toml", RESIDUALS if many else "residuals.csv"]
+        written += [PLACEMENTS] if many_placements else []
+        with output_folder(folder, written, force, instead_of=[name for name in FILES if name not in written]) as here:
+            file = dataclasses.replace(self, artefacts=[]).file() if many_placements else self.file()
+            if many_placements:
+                file.artefacts_file = write_beside(Placements.of(self.artefacts).table, here / PLACEMENTS)
+            if many:
+                file.residuals_file = write_beside(self.residuals, here / RESIDUALS)
+            else:
+                self.residuals.write_csv(here / "residuals.csv")
+            with (here / "result.json").open("w", encoding="utf-8") as stream:
+                _write(self, file, stream.write, residuals=not many)
+            (here / "arm.toml").write_text(arm_toml(self.arm), encoding="utf-8")
 
     @classmethod
     def load(cls, path: str | Path) -> Result:
-        """Read a `result.json`, or the one in a folder. Raises UlnaInputError."""
+        """Read a `result.json`, or the one in a folder. Tables beside it are read when they are asked for. Raises
+        UlnaInputError."""
         path = Path(path)
         path = path / "result.json" if path.is_dir() else path
         document, _ = read_json(path, "a result.json")
         check_format(document, path, "ulna-result")
         arm = Arm.of_result(document, path)
+        covariance = covariance_of_result(document, arm, path)
+        rows = document.pop("residuals", None)  # very many: checked as columns
         try:
-            return cls(
-                arm=arm,
-                parameters=[Parameter(**entry) for entry in document["parameters"]],
-                covariance=covariance_of_result(document, arm, path),
-                identifiability=Identification.from_dict(document["identifiability"]),
-                fit=FitSummary.from_dict(document["fit"]),
-                residuals=from_json_rows(document["residuals"]),
-                artefacts=[PlacementFigures.from_dict(entry) for entry in document["artefacts"]],
-                before=document["overall"]["before"],
-                after=document["overall"]["after"],
-                provenance=document["provenance"],
-                outliers=document.get("outliers", []),
-                extras=[JudgedExtra(**entry) for entry in document.get("extras", [])],
-            )
-        except (KeyError, TypeError, ValueError, OverflowError, pl.exceptions.PolarsError) as error:
-            raise UlnaInputError(
-                f"{path}: not as {FORMAT} says ({type(error).__name__}: {error}); expected the file as `ulna "
-                "calibrate` wrote it. Calibrate again."
-            ) from None
+            file = fill_json(ResultFile, document, path)
+        except UlnaInputError as error:
+            raise UlnaInputError(f"{error} The file was changed or damaged: calibrate again.") from None
+        return cls.on_demand(
+            {name: partial(lambda value: value, getattr(file, name)) for name in AS_THEY_STAND}
+            | {
+                "arm": lambda: arm,
+                "covariance": lambda: covariance,
+                "outliers": lambda: document.get("outliers", []),
+                "provenance": lambda: document["provenance"],
+                "before": lambda: figures_of(file.overall.before),
+                "after": lambda: figures_of(file.overall.after),
+                "artefacts": lambda: _placements(file, path),
+                "residuals": _residuals(file, rows, path),
+            }
+        )
+
+
+def _placements(file: ResultFile, path: Path) -> Sequence[PlacementFigures]:
+    if file.artefacts_file is not None:
+        return Placements(read_beside(file.artefacts_file, path, PLACEMENT_SCHEMA))
+    return [PlacementFigures.of_entry(entry) for entry in file.artefacts]
+
+
+def _residuals(file: ResultFile, rows: Any, path: Path) -> Callable[[], pl.DataFrame]:
+    """The table; what stands in the file itself is looked at now. Raises UlnaInputError."""
+    beside = file.residuals_file
+    if beside is not None:
+        return lambda: read_beside(beside, path, SCHEMA)
+    if not isinstance(rows, list):
+        raise UlnaInputError(f"{path}: key 'residuals': expected a list of readings' residuals. Calibrate again.")
+    try:
+        table = from_json_rows(rows)
+    except (TypeError, ValueError, OverflowError, pl.exceptions.PolarsError) as error:
+        raise UlnaInputError(
+            f"{path}: key 'residuals': not as {FORMAT} says ({type(error).__name__}: {error}). Calibrate again."
+        ) from None
+    return lambda: table
+
+
+def _write(result: Result, file: ResultFile, write: Callable[[str], Any], residuals: bool) -> None:
+    """The document in pieces: memory stays bounded for any number of residuals."""
+    document: dict[str, Any] = {"format": FORMAT, "arm": arm_document(result.arm)}
+    document |= file.model_dump(mode="json", exclude_unset=True)
+    # what is not known is left out, as the format always had it
+    document["parameters"] = [
+        {key: value for key, value in row.items() if (key, value) != ("prior", None)} for row in document["parameters"]
+    ]
+    if document["fit"]["chi2_per_dof"] is None:
+        del document["fit"]["chi2_per_dof"]
+    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    if not residuals:
+        write(text + "\n")
+        return
+    write(text.removesuffix("\n}") + ',\n "residuals": [\n')
+    for piece in json_rows(result.residuals):
+        write(piece)
+    write("\n ]\n}\n")
 
 
 def _json_matrix(matrix: Any) -> list[list[float | None]]:

@@ -1,7 +1,7 @@
-"""Ulna's doors: every format that it reads and writes, and what it says to input that it cannot use.
+"""What is generic of files: every room has its own models and readers, and asks here for what they share.
 
-arm.py, study.py, readings.py, result.py: one format each. toml.py, table.py: what they share of reading; tables/: one
-room for each format of tables, layout.py: how a study says that one is written otherwise, rows.py: which rows are used.
-output.py: writing whole or not at all; schema.py: the JSON Schemas under `schemas/`, generated from the same models.
-Everything is converted to mm and rad here, once.
+toml.py, models.py, units.py, numbers.py: documents as typed models, told in one message where they are wrong; names.py,
+toml_text.py, output.py: writing, whole or not at all. table.py: the door to tables; header.py: a table before its rows
+are read, layout.py: how one is written otherwise, rows.py: which rows are used, unused.py: columns that nobody uses;
+tables/: the formats of tables, one file and one row in its registry each.
 """

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import polars as pl
 
 from ulna.formats.header import Header, Numeric
-
-WHAT = "a table (CSV with a header, Parquet, .xlsx, .mat or HDF5)"
 
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
@@ -19,6 +18,14 @@ def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric,
         return f"{at}: the cell is empty; expected a {kind}. Fill it or remove the row."
     kind = "a finite number" if number_of(cell, decimal) is not None else "a number"
     return f"{at}: got '{cell[:60]}', expected {kind}. Correct it or remove the row."
+
+
+def no_numbers(header: Header, row: int, column: str, value: Any, kind: str) -> str:
+    """The message about a typed column of another type."""
+    return (
+        f"{header.path}: {header.at(row, column)}: got {value!r} ({kind}), expected a number. Write the column as "
+        "floating-point numbers."
+    )
 
 
 def number_of(cell: str, decimal: str = ".") -> float | None:

@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 import polars as pl
@@ -43,15 +43,12 @@ class Piece:
 class Header(ABC):
     """A table whose columns are known and whose rows are not yet read."""
 
-    KIND: ClassVar[str]
-    """How a message calls a file of this format: "a CSV file"."""
-    KEYS: ClassVar[tuple[str, ...]] = ()
-    """What may be said of such a file: keys of `ulna.formats.layout.TableKeys`, besides `columns`."""
-
     path: Path
     columns: list[str]
     theirs: Mapping[str, str] = field(default_factory=dict, kw_only=True)
     """The file's own name of each column that the study calls otherwise."""
+    what: str = field(default="a table", kw_only=True)
+    """What is expected of the file, in words."""
 
     @property
     def head(self) -> str:

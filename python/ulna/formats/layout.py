@@ -9,8 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import Field
 
@@ -41,6 +40,8 @@ class TableKeys(Strict):
 @dataclass(frozen=True)
 class Layout:
     """The same, checked, and how messages call its keys."""
+
+    KEYS: ClassVar[tuple[str, ...]] = tuple(key for key in TableKeys.model_fields if key != "columns")
 
     separator: str | None = None
     """One character."""
@@ -125,22 +126,10 @@ class Layout:
             text, option = f'{name} = "{value}"', f'--{name} "{value}"'
         return f"{text} in {self.table}" if self.table else option
 
-    def check_kind(self, path: Path, table: type[Header]) -> None:
-        """Every key must have a meaning for the file's format. Raises UlnaInputError."""
-        given = {
-            "separator": self.separator is not None,
-            "decimal": self.decimal is not None,
-            "header": not self.header,
-            "sheet": self.sheet is not None,
-            "dataset": self.dataset is not None,
-        }
-        meant = {"separator": "CSV", "decimal": "CSV", "header": "CSV and Excel", "sheet": "Excel"}
-        for name, there in given.items():
-            if there and name not in table.KEYS:
-                raise UlnaInputError(
-                    f"{self.key(name)}: {path} is {table.KIND}; expected with {meant.get(name, 'MAT and HDF5')} files "
-                    "only. Remove it, or name another file."
-                )
+    @property
+    def given(self) -> list[str]:
+        """The keys that say something of a file, but `columns`, in their order."""
+        return [key for key in self.KEYS if getattr(self, key) != getattr(AS_EXPECTED, key)]
 
     def mapped(self, header: AnyHeader, known: Sequence[str]) -> AnyHeader:
         """The table with its columns called as `columns` says. `known`: Ulna's names. Raises UlnaInputError."""

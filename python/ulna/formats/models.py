@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import or_
@@ -21,8 +22,18 @@ class Strict(BaseModel):
     """A table of a hand-written file: no unknown key, no silent conversion, no NaN or infinity."""
 
     model_config = ConfigDict(
-        strict=True, extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+        strict=True,
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        defer_build=True,  # a run validates one or two documents, not all that there are
     )
+
+
+class Open(BaseModel):
+    """A table of a file that Ulna writes: later versions may add keys."""
+
+    model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, defer_build=True)
 
 
 @dataclass(frozen=True)
@@ -56,8 +67,19 @@ Model = TypeVar("Model", bound=BaseModel)
 
 def fill(model: type[Model], document: Any, path: Path) -> Model:
     """A document as a typed model. Raises UlnaInputError with one message for the first thing that is wrong."""
+    return _filled(model, path, lambda: model.model_validate(document))
+
+
+def fill_json(model: type[Model], document: Any, path: Path) -> Model:
+    """The same of a model that has dataclasses in it: from Python's objects a strict model takes only their instances,
+    from JSON the tables that they are made of."""
+    text = json.dumps(document, ensure_ascii=False)
+    return _filled(model, path, lambda: model.model_validate_json(text))
+
+
+def _filled(model: type[Model], path: Path, validate: Callable[[], Model]) -> Model:
     try:
-        return model.model_validate(document)
+        return validate()
     except ValidationError as error:
         details = error.errors(include_url=False)
         # An unknown key explains a missing one: 'alhpa' first, then 'alpha'.

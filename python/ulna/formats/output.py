@@ -61,13 +61,17 @@ def refuse_inputs(targets: Iterable[Path], inputs: Iterable[Path]) -> None:
 
 
 @contextmanager
-def output_folder(folder: str | Path, names: Sequence[str], force: bool = False) -> Iterator[Path]:
+def output_folder(
+    folder: str | Path, names: Sequence[str], force: bool = False, instead_of: Sequence[str] = ()
+) -> Iterator[Path]:
     """A staging folder to write `names` into; they appear in `folder` together when the block ends without an error.
 
-    A folder that exists keeps its other files. Raises UlnaInputError as `check_output`, or where it cannot be written.
+    A folder that exists keeps its other files, but none of `instead_of`: what an earlier run wrote where this one
+    writes something else, which needs `force` too. Raises UlnaInputError as `check_output`, or where it cannot be
+    written.
     """
     folder = Path(folder)
-    check_output(folder, names, force)
+    check_output(folder, [*names, *instead_of], force)
     staging = _staging(folder, folder.name)
     try:
         try:
@@ -84,7 +88,7 @@ def output_folder(folder: str | Path, names: Sequence[str], force: bool = False)
             raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
         try:
             with MOVING:
-                _move_all(staging, folder, names)
+                _move_all(staging, folder, names, instead_of)
         except OSError as error:
             raise _unwritable(folder, error) from None
     finally:
@@ -92,7 +96,7 @@ def output_folder(folder: str | Path, names: Sequence[str], force: bool = False)
         UNDER_WAY.discard(staging)
 
 
-def _move_all(staging: Path, folder: Path, names: Sequence[str]) -> None:
+def _move_all(staging: Path, folder: Path, names: Sequence[str], instead_of: Sequence[str]) -> None:
     if not folder.exists():
         staging.chmod(0o777 & ~_umask())  # a temporary folder is private; a result is as public as its maker's others
         staging.replace(folder)
@@ -101,11 +105,12 @@ def _move_all(staging: Path, folder: Path, names: Sequence[str]) -> None:
     kept.mkdir()
     moved: list[str] = []
     try:
-        for name in names:
+        for name in [*names, *instead_of]:
             if (folder / name).exists():
                 (folder / name).replace(kept / name)
             moved.append(name)
-            (staging / name).replace(folder / name)
+            if name in names:
+                (staging / name).replace(folder / name)
     except BaseException:
         for name in moved:  # back to what was there before
             (folder / name).unlink(missing_ok=True)

@@ -9,15 +9,12 @@ from pathlib import Path
 
 import polars as pl
 
-from ulna.formats.cells import WHAT, number_of
+from ulna.formats.cells import number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.tables.registry import WHAT, open_table
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
-
-#: an HDF5 file may begin with a block of somebody else's, of one of these lengths; MATLAB writes 512 bytes
-_HDF5_OFFSETS = (0, 512, 1024, 2048, 4096, 8192, 16384, 32768)
-_HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
 def file_sha256(path: Path) -> str:
@@ -33,40 +30,12 @@ def read_header(
 
     Raises UlnaInputError for a file that is no table, or none that is written like this.
     """
-    header = _opened(path, what, layout)
-    _check_names(header, layout)
-    return layout.mapped(header, known or [])
-
-
-def _opened(path: Path, what: str, layout: Layout) -> Header:
-    # The rooms are entered when they are needed: a study of CSV files loads no HDF5 library.
     start = read_bytes(path, what, limit=1 << 16)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
-    if start.startswith(b"PAR1"):
-        from ulna.formats.tables.parquet import ParquetTable, open_parquet
-
-        layout.check_kind(path, ParquetTable)
-        return open_parquet(path, what)
-    if any(start.startswith(_HDF5, offset) for offset in _HDF5_OFFSETS):
-        from ulna.formats.tables.hdf5 import Hdf5Table, open_hdf5
-
-        layout.check_kind(path, Hdf5Table)
-        return open_hdf5(path, what, layout)
-    if start[124:128] in (b"\x00\x01IM", b"\x01\x00MI"):
-        from ulna.formats.tables.matfile import MatTable, open_mat
-
-        layout.check_kind(path, MatTable)
-        return open_mat(path, what, layout)
-    if start.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
-        from ulna.formats.tables.workbook import SheetTable, open_workbook
-
-        layout.check_kind(path, SheetTable)
-        return open_workbook(path, what, layout)
-    from ulna.formats.tables.text import TextTable, open_text
-
-    layout.check_kind(path, TextTable)
-    return open_text(path, start, what, layout)
+    header = open_table(path, start, what, layout)
+    _check_names(header, layout)
+    return layout.mapped(header, known or [])
 
 
 def _check_names(header: Header, layout: Layout) -> None:
@@ -94,14 +63,6 @@ def read_table(
     Raises UlnaInputError naming row, column and value of the first cell that is not.
     """
     return header.frame(numeric, header.columns if columns is None else columns, blank)
-
-
-def iter_tables(header: Header, numeric: Numeric, rows: int = 1 << 18) -> Iterator[pl.DataFrame]:
-    """All columns in pieces of about `rows` rows and, of CSV and Parquet, bounded memory, for files of any size."""
-    numbers = [name for name in header.columns if numeric(name)]
-    for piece in header.pieces(numbers, [name for name in header.columns if name not in numbers], rows):
-        columns = {name: piece.numbers[:, k] for k, name in enumerate(numbers)} | piece.texts
-        yield pl.DataFrame({name: columns[name] for name in header.columns})
 
 
 def count_rows(header: Header) -> int:

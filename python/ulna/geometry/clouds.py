@@ -90,6 +90,11 @@ class Clouds:
         """(T,) back to (...,)."""
         return values.reshape(self.shape)
 
+    def one_each(self, values: ArrayLike) -> F64:
+        """A number, or (..., N), as (T, N)."""
+        count = (*self.shape, self.count)
+        return np.broadcast_to(np.asarray(values, dtype=np.float64), count).reshape(len(self.at), self.count)
+
     def each(self, values: F64) -> F64:
         """(T, N) back to (..., N)."""
         return values.reshape(*self.shape, self.count)

@@ -10,12 +10,11 @@ from pydantic import Field
 
 from ulna.arm.arm import Arm
 from ulna.arm.stated import PositiveEach, TravelTable, VolumeTable, encoder_of, travel_of, volume_of
-from ulna.artefacts.artefact import SURFACES
-from ulna.artefacts.kinds import ArtefactTable, check_kinds, make_artefact
+from ulna.artefacts.kinds import ArtefactTable, check_kinds, kind_of, made
+from ulna.artefacts.tables import Place
 from ulna.formats.models import Strict, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
-from ulna.ground.errors import UlnaInputError
 from ulna.planning.spec import Criterion, PlanSpec
 from ulna.study.study import Study
 
@@ -83,23 +82,20 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
     file = fill(PlanFile, document, path)
     units, table = file.units, file.plan
     ((name, artefact_table),) = file.artefact.items()
-    artefact, features_file = make_artefact(name, artefact_table, units, path, [])
-    if artefact.kind == "points" and not artefact.features:
-        raise UlnaInputError(
-            f"{path}: key 'artefact.{name}.features' is missing; a plan needs to know what is touched. Add it."
-        )
-    surface = artefact.kind in SURFACES
+    place = Place(path, units, [])
+    artefact = made(name, artefact_table, place)
+    kind = kind_of(artefact)
     study = None if table.taken is None else Study.load(path.parent / table.taken)
-    files = [path, *([] if features_file is None else [features_file.path])]
+    files = [path, *(each.path for each in place.files)]
     files += [] if study is None else [file.path for file in study.files]
     return PlanSpec(
         artefact=artefact,
         encoder_rad=np.asarray(encoder_of(file.noise.encoder, arm, path)) * units.rad,
         seat_mm=file.noise.seat * units.mm,
         choose=table.choose,
-        touches=table.touches or (20 if surface else 1),
+        touches=table.touches or (kind.touches if kind.scattered else 1),
         placements=table.placements,
-        candidates=table.candidates or (10_000 if surface else 100_000),
+        candidates=table.candidates or (10_000 if kind.scattered else 100_000),
         criterion=table.criterion,
         hold=list(table.hold),
         probe=table.probe,

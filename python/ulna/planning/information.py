@@ -13,10 +13,11 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.calibration.observability import indices
+from ulna.geometry.rigid import turned
 from ulna.ground.arrays import F64, I64
 from ulna.planning.candidates import Candidates
 from ulna.planning.spec import PlanSpec
-from ulna.planning.touchable import touchable, turned
+from ulna.planning.touchable import touchable
 from ulna.study.study import Study
 
 RANK_TOLERANCE = 1e-9

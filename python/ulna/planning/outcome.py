@@ -13,11 +13,12 @@ import polars as pl
 
 from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
+from ulna.geometry.rigid import turned
 from ulna.ground.arrays import F64
 from ulna.planning.candidates import Candidates
 from ulna.planning.scene import Figures
 from ulna.planning.spec import PlanSpec
-from ulna.planning.touchable import touchable, turned
+from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial
 
 FORMAT = "ulna-plan-result/1"

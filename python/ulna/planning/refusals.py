@@ -7,18 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError
 from ulna.planning.candidates import EACH
 from ulna.planning.spec import PlanSpec
-from ulna.study.assembly import check_balls
 from ulna.study.data import FitOptions
 from ulna.study.parameters import hold_mask
 from ulna.study.study import Study
 
-LEAST_TOUCHES = 4
-"""Of a surface: three only say where it is."""
 MOST_TOUCHES = 1_000_000
 """Of surfaces, of all candidates together: a row each."""
 LEAST_CANDIDATES = 1000
@@ -37,25 +34,15 @@ def free_parameters(arm: Arm, spec: PlanSpec) -> I64:
 
 def check(arm: Arm, spec: PlanSpec) -> None:
     """Raises UlnaInputError for what no plan can be made of."""
-    kind = spec.artefact.kind
-    if kind == "length":
-        raise UlnaInputError(
-            f"{spec.label}: artefact '{spec.artefact.name}' is a length; plans are made for bar, seat, points, sphere "
-            "and plane. State the bar whose length it is."
-        )
+    kind = kind_of(spec.artefact)
+    kind.check_planned(spec.artefact, spec.touches, spec.label)
     if spec.artefact.fitted:
         raise UlnaInputError(
             f"{spec.label}: artefact '{spec.artefact.name}' has fit = true; expected it as its certificate has it, "
             "which a plan takes as known. Remove fit."
         )
-    if kind in SURFACES:
-        probe = arm.probe_index(spec.probe)
-        check_balls(spec.artefact, arm, [probe], spec.label)
-        if spec.touches < LEAST_TOUCHES:
-            raise UlnaInputError(
-                f"{spec.label}: {spec.touches} touches of a {kind} tell nothing, for its place is unknown; expected "
-                f"{LEAST_TOUCHES} or more. Raise touches."
-            )
+    kind.check_probes(spec.artefact, arm, [arm.probe_index(spec.probe)], spec.label)
+    if kind.scattered:
         if spec.candidates * spec.touches > MOST_TOUCHES:
             raise UlnaInputError(
                 f"{spec.label}: {spec.candidates} candidates of {spec.touches} touches each; expected at most "
@@ -94,7 +81,7 @@ def check(arm: Arm, spec: PlanSpec) -> None:
                 f"parameters than '{arm.name}'; expected the same joints and probes. Name another study."
             )
         for group in spec.taken.readings:
-            if group.artefact.kind in ("sphere", "plane"):
+            if kind_of(group.artefact).scattered:
                 raise UlnaInputError(
                     f"{spec.label}: readings taken of artefact '{group.artefact.name}' are of a {group.artefact.kind}; "
                     "expected bar, seat, points or length. Leave them out of the study."

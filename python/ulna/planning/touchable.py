@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.planning.spec import PlanSpec
 from ulna.simulation.places import Standing
@@ -44,7 +44,7 @@ class Touchable:
 def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
     """Of the plan's artefact."""
     artefact = spec.artefact
-    if artefact.kind not in SURFACES:
+    if not kind_of(artefact).scattered:
         at_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
         return Touchable(at_mm, tuple(artefact.features), spec.touches)
     spread = touches_of(Touching(artefact, 1, spec.touches), artefact, arm, [probe])
@@ -54,16 +54,3 @@ def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
         unknowns = np.column_stack([np.ones(len(at_mm)), at_mm[:, :2] / np.abs(at_mm[:, :2]).max()])
     names = tuple(str(number + 1) for number in range(len(at_mm)))
     return Touchable(at_mm, names, 1, outward, unknowns)
-
-
-def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
-    """(K, 3) directions in the frame of (K, 3) places → (S, K, 3) where the places are (S, K, 3): the rotation that
-    takes them there (Kabsch's, by singular values)."""
-    middle = own - own.mean(axis=0)
-    there = placed_mm - placed_mm.mean(axis=1, keepdims=True)
-    left, _, right = np.linalg.svd(np.einsum("ki,skj->sij", middle, there))
-    sign = np.ones(left.shape[:2])
-    sign[:, 2] = np.sign(np.linalg.det(left @ right))
-    rotation = left @ (sign[:, :, None] * right)
-    found: F64 = directions @ rotation
-    return found

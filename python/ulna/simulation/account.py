@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.simulation.spec import Simulation
 from ulna.simulation.truth import TrueTouching, Truth
@@ -74,10 +75,11 @@ def _placements(group: Readings, true: TrueTouching) -> Iterator[dict[str, Any]]
 
 def _dimensions(stated: Artefact, true: Artefact) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    for key in ("length_mm", "diameter_mm"):
-        if getattr(stated, key) is not None:
-            found |= {key: getattr(true, key), f"stated_{key}": getattr(stated, key)}
-    if stated.kind == "points":
+    kind = kind_of(stated)
+    for own, really in zip(kind.dimensions(stated), kind.dimensions(true), strict=True):
+        key = f"{own.name}_{own.unit}" if own.unit != "1" else own.name
+        found |= {key: really.value, f"stated_{key}": own.value}
+    if kind.features_file:
         found["features_mm"] = {name: list(xyz) for name, xyz in true.features.items()}
     return found
 
@@ -85,7 +87,7 @@ def _dimensions(stated: Artefact, true: Artefact) -> dict[str, Any]:
 def _missed(group: Readings, true: TrueTouching) -> list[dict[str, Any]]:
     names = list(group.artefact.features)
     distance_mm = np.linalg.norm(true.standings.off_mm, axis=2)
-    per_row = distance_mm.max(axis=1) if group.artefact.kind == "length" else distance_mm.reshape(-1)
+    per_row = distance_mm.reshape(-1, kind_of(group.artefact).poses).max(axis=1)
     found = []
     for k in np.flatnonzero(true.missed).tolist():
         entry: dict[str, Any] = {

@@ -7,21 +7,17 @@ from pathlib import Path
 
 from ulna.arm.arm import Arm
 from ulna.arm.stated import encoder_of, one_per_joint, travel_of, volume_of
-from ulna.artefacts.kinds import check_kinds, make_artefact
+from ulna.artefacts.kinds import KINDS, check_kinds, made
+from ulna.artefacts.tables import Place, TouchedTable
 from ulna.formats.models import fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.spec import Drawing, Missed, Simulation, Temperature, Touching
-from ulna.simulation.tables import DrawingTable, SimulatedPlane, SimulatedTable, SimulationFile, TemperatureTable
+from ulna.simulation.tables import DrawingTable, SimulationFile, TemperatureTable
 from ulna.study.data import FitOptions
 
 WHAT = 'a simulation file (TOML, format = "ulna-simulation/1")'
-
-
-#: what is not said of a kind
-PLACEMENTS = {"seat": 1, "bar": 100, "length": 100}
-TOUCHES = {"seat": 30, "sphere": 20, "plane": 20}
 
 
 def load_simulation(path: Path) -> Simulation:
@@ -32,8 +28,8 @@ def load_simulation(path: Path) -> Simulation:
     file = fill(SimulationFile, document, path)
     units, arm_path = file.units, path.parent / file.arm
     arm = _counted(file, Arm.load(arm_path), path)
-    files = [path, arm_path]
-    touching = [_touching(name, table, units, path, files) for name, table in file.artefact.items()]
+    place = Place(path, units, [])
+    touching = [_touching(name, table, place) for name, table in file.artefact.items()]
     encoder = file.noise.encoder
     return Simulation(
         arm=arm,
@@ -49,39 +45,24 @@ def load_simulation(path: Path) -> Simulation:
         volume_mm=volume_of(file.volume, units, path),
         fit=FitOptions(**file.fit.model_dump()),
         path=path,
-        files=tuple(files),
+        files=(path, arm_path, *(each.path for each in place.files)),
     )
 
 
-def _touching(name: str, table: SimulatedTable, units: Units, path: Path, files: list[Path]) -> Touching:
-    key = f"{path}: key 'artefact.{name}"
-    for needed in ("length", "features"):
-        if hasattr(table, needed) and getattr(table, needed) is None:
-            raise UlnaInputError(f"{key}.{needed}' is missing; a simulation needs to know what is touched. Add it.")
-    artefact, features_file = make_artefact(name, table, units, path, [])
-    if features_file is not None:
-        files.append(features_file.path)
-    fixed = artefact.frame == "arm"
-    if fixed and (table.placements or 1) != 1:
-        raise UlnaInputError(
-            f"{key}.placements': got {table.placements}, but its coordinates are in the arm's frame: it stands in one "
-            "place. Remove the key, or give touches."
-        )
-    if artefact.kind == "length" and (table.touches or 1) != 1:
-        raise UlnaInputError(
-            f"{key}.touches': got {table.touches}, but a row of lengths is two poses; expected 1. Remove the key, and "
-            "give placements: the number of rows."
-        )
-    if artefact.kind == "length" and isinstance(table.probe, list) and len(table.probe) > 1:
-        raise UlnaInputError(f"{key}.probe': got {len(table.probe)} probes; expected one. Correct it.")
-    size = table.size if isinstance(table, SimulatedPlane) else None
-    return Touching(
+def _touching(name: str, table: TouchedTable, place: Place) -> Touching:
+    mm = place.units.mm
+    kind = KINDS[table.kind]
+    kind.check_simulated(table, f"{place.path}: key 'artefact.{name}")
+    artefact = made(name, table, place)
+    size_mm = table.size_mm(mm)
+    given = () if table.probe is None else (table.probe,) if isinstance(table.probe, str) else tuple(table.probe)
+    plain = Touching(
         artefact=artefact,
-        placements=table.placements or (1 if fixed else PLACEMENTS.get(artefact.kind, 5)),
-        touches=table.touches or TOUCHES.get(artefact.kind, 1),
-        probes=() if table.probe is None else (table.probe,) if isinstance(table.probe, str) else tuple(table.probe),
-        size_mm=(200.0, 200.0) if size is None else (size[0] * units.mm, size[1] * units.mm),
+        placements=table.placements or (1 if artefact.frame == "arm" else kind.placements),
+        touches=table.touches or kind.touches,
+        probes=given,
     )
+    return plain if size_mm is None else replace(plain, size_mm=size_mm)
 
 
 def _drawing(table: DrawingTable | str, units: Units) -> Drawing | None:

@@ -48,16 +48,19 @@ class Mover:
         """(count, n) encoder angles, uniform over the travel."""
         return rng.uniform(self.travel_rad[:, 0], self.travel_rad[:, 1], (count, self.arm.n))
 
-    def on_points(self, points_mm: F64, probe: I64, warmth_k: F64 | None, seed: int) -> tuple[F64, Bool]:
+    def on_points(
+        self, points_mm: F64, probe: I64, warmth_k: F64 | None, seed: int, tries: int = TRIES
+    ) -> tuple[F64, Bool]:
         """(N, n) postures with the tip on (N, 3) points, elbow and wrist at random, and which points were reached.
 
         probe (N,); warmth_k (N,): how much warmer than 20 °C the arm is; None where it does not matter.
+        tries: random elbows and wrists for a point.
         """
         q_rad, reached = np.zeros((len(points_mm), self.arm.n)), np.zeros(len(points_mm), dtype=bool)
         for index in np.unique(probe).tolist():
             own = np.flatnonzero(probe == index)
             points = np.ascontiguousarray(points_mm[own])
-            q_rad[own], reached[own] = self.arm.core.pose_for_points(points, self.travel_rad, seed, index, TRIES)
+            q_rad[own], reached[own] = self.arm.core.pose_for_points(points, self.travel_rad, seed, index, tries)
             if warmth_k is not None:
                 there = own[reached[own]]
                 q_rad[there], reached[there] = self._warmed(q_rad[there], points_mm[there], index, warmth_k[there])

@@ -10,9 +10,12 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import Effects
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kind import Touches
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.formats.output import output_folder, refuse_inputs
-from ulna.ground.arrays import F64, I64, Progress
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.account import account
 from ulna.simulation.mover import Mover
@@ -20,7 +23,7 @@ from ulna.simulation.reading_errors import ReadingErrors, as_drawn
 from ulna.simulation.spec import Simulation, Touching
 from ulna.simulation.standing import Standings, stand
 from ulna.simulation.study_files import names_for, texts, write_tables
-from ulna.simulation.touches import probes_of, touches_of, true_artefact
+from ulna.simulation.touches import probes_of, touches_of
 from ulna.simulation.truth import TrueTouching, Truth
 from ulna.study.data import Noise
 from ulna.study.study import Study
@@ -75,11 +78,12 @@ def simulate(simulation: Simulation | str | Path, progress: Progress | None = No
     probes = [probes_of(touching, simulation.arm, simulation.label) for touching in simulation.touching]
     readings, touchings = [], []
     for number, touching in enumerate(simulation.touching):
-        true = true_artefact(touching.artefact, np.random.default_rng([simulation.seed, number, 1]))
+        stated = touching.artefact
+        true = kind_of(stated).drawn(stated, np.random.default_rng([simulation.seed, number, 1]))
         touches = touches_of(touching, true, simulation.arm, probes[number])
         standings = stand(simulation, mover, touching, touches, number, progress)
         rng = np.random.default_rng([simulation.seed, number, 2])
-        readings.append(_readings(simulation, touching, touches.probe, touches.feature, standings, rng))
+        readings.append(_readings(simulation, touching, true, touches, standings, rng))
         touchings.append(TrueTouching(true, standings))
     u_rad, seat_mm = simulation.reading_u_rad, simulation.seat_mm or None
     noise = None if u_rad is None and seat_mm is None else Noise(u_rad, seat_mm)
@@ -129,8 +133,8 @@ def _checked_travel(simulation: Simulation) -> F64:
 def _readings(
     simulation: Simulation,
     touching: Touching,
-    probe: I64,
-    feature: I64,
+    true: Artefact,
+    touches: Touches,
     standings: Standings,
     rng: np.random.Generator,
 ) -> Readings:
@@ -138,18 +142,20 @@ def _readings(
     places, per, n = standings.q_rad.shape
     encoder_rad = np.zeros(n) if simulation.encoder_rad is None else simulation.encoder_rad
     read_rad = ReadingErrors(encoder_rad, simulation.seat_mm, simulation.step_rad).read(standings.q_rad, rng)
-    pairs = touching.artefact.kind == "length"
-    rows = places if pairs else places * per
-    length_mm = np.full(rows, touching.artefact.length_mm or 0.0) if pairs else None
+    kind = kind_of(true)
+    each = per // kind.poses  # rows of a placement
+    rows, pairs = places * each, kind.poses == 2
+    measured_mm = kind.measured_mm(touching.artefact, true, touches, places, rng)
+    of_row = slice(None, None, kind.poses)
     labels = np.arange(1, places + 1).astype(str).astype(object)
     temperature_c = standings.temperature_c
     return Readings(
         artefact=touching.artefact,
-        q_rad=np.ascontiguousarray(read_rad[:, 0] if pairs else read_rad.reshape(rows, n)),
-        p_rad=np.ascontiguousarray(read_rad[:, 1]) if pairs else None,
-        length_mm=length_mm,
-        probe=np.tile(probe[:1] if pairs else probe, places),
-        feature=np.zeros(rows, np.int64) if pairs else np.tile(feature, places),
+        q_rad=np.ascontiguousarray(read_rad[:, of_row].reshape(rows, n)),
+        p_rad=np.ascontiguousarray(read_rad[:, 1::2].reshape(rows, n)) if pairs else None,
+        length_mm=measured_mm,
+        probe=np.tile(touches.probe[of_row], places),
+        feature=np.tile(touches.feature[of_row], places),
         placement=np.repeat(labels, rows // places),
         row=np.arange(1, rows + 1),
         file=np.zeros(rows, np.int64),

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.effects.effects import REFERENCE_C
+from ulna.artefacts.kind import Touches
 from ulna.ground.arrays import F64, I64, Bool, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import turns
 from ulna.simulation.spec import Simulation, Touching
-from ulna.simulation.touches import Touches
 
 #: rounds of drawing places, one after the other, that find none before it is said that there are too few
 BARREN = 20

@@ -12,6 +12,7 @@ import polars as pl
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.arrays import F64
@@ -28,7 +29,7 @@ def names_for(artefacts: Iterable[Artefact]) -> list[str]:
     names = ["arm.toml", "study.toml", "truth.toml", "truth.json"]
     for artefact in artefacts:
         names.append(f"{artefact.name}.csv")
-        if artefact.kind == "points":
+        if kind_of(artefact).features_file:
             names.append(_features_file(artefact))
     return names
 
@@ -68,14 +69,14 @@ def write_tables(study: Study, step_rad: F64 | None, folder: Path) -> None:
     """The readings, and the features of points, into a folder."""
     for group in study.readings:
         readings_table(group, list(study.arm.probes), step_rad).write_csv(folder / f"{group.artefact.name}.csv")
-        if group.artefact.kind == "points":
+        if kind_of(group.artefact).features_file:
             features_table(group.artefact).write_csv(folder / _features_file(group.artefact))
 
 
 def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> pl.DataFrame:
     """Columns as in a readings file; angles in rad, or whole counts of step_rad (n,)."""
     columns: dict[str, Any] = {"placement": group.placement.tolist()}
-    if group.artefact.features and group.artefact.kind != "seat":
+    if len(group.artefact.features) > 1:
         columns["feature"] = np.array(list(group.artefact.features), dtype=object)[group.feature].tolist()
     if _several_probes(group):
         columns["probe"] = np.array(probes, dtype=object)[group.probe].tolist()
@@ -84,6 +85,9 @@ def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> 
             assert angles_rad is not None
             column = angles_rad[:, k]
             columns[f"{letter}{k + 1}"] = column if step_rad is None else np.rint(column / step_rad[k]).astype(np.int64)
+    measured = kind_of(group.artefact).measured_column
+    if measured is not None and group.artefact.length_mm is None and group.length_mm is not None:
+        columns[measured] = group.length_mm
     if group.temperature_c is not None:
         columns["temperature"] = group.temperature_c
     return pl.DataFrame(columns)
@@ -107,13 +111,7 @@ def _several_probes(group: Readings) -> bool:
 
 
 def _artefact_table(artefact: Artefact) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": artefact.kind}
-    if artefact.kind == "points":
-        table |= {"features": _features_file(artefact), "frame": artefact.frame}
-    if artefact.length_mm is not None:
-        table["length"] = artefact.length_mm
-    if artefact.diameter_mm is not None:
-        table |= {"diameter": artefact.diameter_mm, "inside": artefact.inside}
+    table: dict[str, Any] = {"kind": artefact.kind, **kind_of(artefact).written(artefact, _features_file(artefact))}
     if artefact.u_mm and artefact.feature_u_mm is None:
         table["u"] = artefact.u_mm
     if artefact.fitted:

@@ -7,73 +7,12 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.effects.effects import Extra
-from ulna.arm.stated import AmountEach, PositiveEach, TravelTable, VolumeTable, each_kind
-from ulna.artefacts.kinds import BarTable, LengthTable, PlaneTable, PointsTable, SeatTable, SphereTable
+from ulna.arm.stated import AmountEach, PositiveEach, TravelTable, VolumeTable
+from ulna.artefacts.kinds import SimulatedTable
 from ulna.formats.models import Strict
 from ulna.formats.numbers import Amount, Positive
 from ulna.formats.units import Units
 from ulna.study.data import Loss
-
-Count = Annotated[int, Field(ge=1, le=10_000_000)]
-
-
-Probes = Annotated[
-    Annotated[str, Tag("<all>")] | Annotated[Annotated[list[str], Field(min_length=1)], Tag("<each>")],
-    Discriminator(each_kind),
-]
-
-
-class Touched(Strict):
-    """How an artefact is touched, beside what it is."""
-
-    placements: Count | None = None
-    """How often it stands somewhere (seat: 1; bar: 100; length: 100 rows; others: 5)."""
-    touches: Count | None = None
-    """Of each feature with each probe at each placement (seat: 30; others: 1); of a sphere or plane: in all (20)."""
-    probe: Probes | None = None
-    """One, or a list; the arm's only one where it is not given."""
-
-
-class SimulatedBar(BarTable, Touched):
-    """A bar, and how it is touched."""
-
-
-class SimulatedSeat(SeatTable, Touched):
-    """A seat, and how it is touched."""
-
-
-class SimulatedPoints(PointsTable, Touched):
-    """Points, and how they are touched."""
-
-
-class SimulatedLength(LengthTable, Touched):
-    """Pairs of poses a known length apart, and how many."""
-
-
-class SimulatedSphere(SphereTable, Touched):
-    """A sphere, and how it is touched: over one half of it."""
-
-
-class SimulatedPlane(PlaneTable, Touched):
-    """A plane, and how it is touched: over a rectangle."""
-
-    size: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
-    """Sides of the rectangle (200 mm by 200 mm)."""
-
-
-def _kind(table: Any) -> str:
-    return f"<{table.get('kind') if isinstance(table, dict) else getattr(table, 'kind', None)}>"
-
-
-SimulatedTable = Annotated[
-    Annotated[SimulatedBar, Tag("<bar>")]
-    | Annotated[SimulatedSeat, Tag("<seat>")]
-    | Annotated[SimulatedPoints, Tag("<points>")]
-    | Annotated[SimulatedLength, Tag("<length>")]
-    | Annotated[SimulatedSphere, Tag("<sphere>")]
-    | Annotated[SimulatedPlane, Tag("<plane>")],
-    Discriminator(_kind),
-]
 
 
 class DrawingTable(Strict):

@@ -8,6 +8,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import Bool
 from ulna.simulation.standing import Standings
 
@@ -23,9 +24,9 @@ class TrueTouching:
 
     @property
     def missed(self) -> Bool:
-        """(N,) readings that are missed touches; length rows: of either end."""
+        """(N,) readings that are missed touches; of rows of two poses: of either."""
         missed = self.standings.missed
-        return np.asarray(missed.any(axis=1)) if self.artefact.kind == "length" else missed.reshape(-1)
+        return np.asarray(missed.reshape(-1, kind_of(self.artefact).poses).any(axis=1))
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES, Artefact
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
@@ -43,7 +43,8 @@ def assemble(study: StudyData, hold: Callable[[list[str]], Bool] | None = None) 
     try:
         problem = _core.Problem(arm.core, noise.encoder_rad, noise.seat_mm)
         for group in study.readings:
-            _ADD.get(group.artefact.kind, _add_points)(problem, study, arm, group)
+            balls, warmth = balls_mm(study, arm, group), warmth_k(study, arm, group)
+            kind_of(group.artefact).enter(problem, group, balls, warmth)
         names, units = problem.parameter_names, problem.parameter_units
         mask = hold_mask(study, names) if hold is None else hold(names)
         for parameter, (value, u) in priors(study, names, units, problem.parameters.tolist(), mask).items():
@@ -68,99 +69,10 @@ def warmth_k(study: StudyData, arm: Arm, group: Readings) -> F64 | None:
         ) from None
 
 
-def _add_lengths(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
-    assert group.p_rad is not None
-    assert group.length_mm is not None
-    problem.add_lengths(
-        group.artefact.name,
-        np.ascontiguousarray(group.q_rad),
-        np.ascontiguousarray(group.p_rad),
-        group.probe,
-        group.length_mm,
-        group.artefact.u_mm,
-        group.artefact.fitted,
-        warmth_k(study, arm, group),
-    )
-
-
-def _add_points(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
-    artefact = group.artefact
-    each = artefact.feature_u_mm
-    problem.add_points(
-        artefact.name,
-        np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3),
-        artefact.frame,
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.feature,
-        group.placement_code,
-        # of a bar the length is uncertain, of other artefacts every feature by itself
-        artefact.u_mm if artefact.kind == "bar" else np.array(each or [artefact.u_mm] * len(artefact.features)),
-        list(artefact.features),
-        artefact.fitted,
-        warmth_k(study, arm, group),
-    )
-
-
-def _add_sphere(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
-    artefact = group.artefact
-    assert artefact.diameter_mm is not None
-    problem.add_sphere(
-        artefact.name,
-        artefact.diameter_mm,
-        balls_mm(study, arm, group),
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.placement_code,
-        artefact.u_mm,
-        artefact.fitted,
-        artefact.inside,
-        warmth_k(study, arm, group),
-    )
-
-
-def _add_plane(problem: _core.Problem, study: StudyData, arm: Arm, group: Readings) -> None:
-    problem.add_plane(
-        balls_mm(study, arm, group),
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.placement_code,
-        warmth_k(study, arm, group),
-    )
-
-
-_ADD: dict[str, Callable[..., Any]] = {"length": _add_lengths, "sphere": _add_sphere, "plane": _add_plane}
-
-
 def balls_mm(study: StudyData, arm: Arm, group: Readings) -> F64:
-    """(P,) diameters of the probes' balls, 0 where not needed.
+    """(P,) diameters of the probes' balls, 0 where not known and not needed.
 
     Raises UlnaInputError where one is needed and not known, or too large for a hollow.
-
-    A plane touched with one probe does not need its ball: the plane lies by half of it farther in, that is all.
     """
-    assert group.artefact.kind in SURFACES
-    check_balls(group.artefact, arm, np.unique(group.probe).tolist(), study.label)
+    kind_of(group.artefact).check_probes(group.artefact, arm, np.unique(group.probe).tolist(), study.label)
     return np.array([probe.ball_mm or 0.0 for probe in arm.probes.values()])
-
-
-def check_balls(artefact: Artefact, arm: Arm, used: Sequence[int], label: str) -> None:
-    """Whether the balls of the probes that are used can touch the surface, and are known where they matter.
-
-    label: what messages call the file. Raises UlnaInputError.
-    """
-    names, balls = list(arm.probes), [probe.ball_mm for probe in arm.probes.values()]
-    unknown = [k for k in used if balls[k] is None]
-    if unknown and (artefact.kind == "sphere" or (artefact.kind == "plane" and len(used) > 1)):
-        name = names[unknown[0]]
-        raise UlnaInputError(
-            f"{label}: artefact '{artefact.name}' is touched on its surface with probe '{name}', whose ball has no "
-            f"diameter in arm '{arm.name}'; expected probe.{name}.ball, in the arm file's length unit. Add it."
-        )
-    wide = [k for k in used if artefact.inside and (balls[k] or 0.0) >= (artefact.diameter_mm or 0.0)]
-    if wide:
-        raise UlnaInputError(
-            f"{label}: artefact '{artefact.name}' is a hollow of {artefact.diameter_mm:g} mm, but the ball of probe "
-            f"'{names[wide[0]]}' has {balls[wide[0]]:g} mm; expected a smaller ball. Correct the diameters, or remove "
-            "inside."
-        )

@@ -10,8 +10,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kinds import check_kinds, make_artefact
+from ulna.artefacts.kinds import check_kinds, kind_of, made
 from ulna.artefacts.readings import InputFile, Readings
+from ulna.artefacts.tables import Place
 from ulna.formats.models import fill
 from ulna.formats.rows import Rows
 from ulna.formats.toml import check_format, read_toml
@@ -20,7 +21,7 @@ from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.study.data import FitOptions, Noise, Prior, StudyData
 from ulna.study.options import with_options
 from ulna.study.parameters import check_patterns
-from ulna.study.readings.checks import check_bar_ends, check_limits, check_repeats
+from ulna.study.readings.checks import check_limits, check_repeats
 from ulna.study.readings.columns import Source
 from ulna.study.readings.merge import merge
 from ulna.study.readings.own_points import has_own_points
@@ -50,10 +51,9 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     remarks: list[str] = []
     files = [InputFile(path, digest, 0), InputFile(arm_path, arm_digest, 0)]
     artefacts: dict[str, Artefact] = {}
+    place = Place(path, file.units, remarks, files)
     for name, table in file.artefact.items():
-        artefacts[name], features_file = make_artefact(name, table, file.units, path, remarks)
-        if features_file is not None:
-            files.append(features_file)
+        artefacts[name] = made(name, table, place)
     readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
     study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
     with_options(study)  # what cannot be asked is told now, not after the work
@@ -113,7 +113,7 @@ def _readings(
         if rows != "check" and all(group.artefact.name != name for group in groups):
             remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
     for group in groups:
-        check_bar_ends(group, files, path)
+        kind_of(group.artefact).check_readings(group, files, path)
         check_repeats(group, files, remarks, own_points=has_own_points(artefacts[group.artefact.name]))
         check_limits(group, arm, files, remarks)
     return groups

@@ -12,6 +12,7 @@ from pydantic import Discriminator, Field, Tag
 from ulna.arm.arm import Arm
 from ulna.arm.stated import PositiveEach, TravelTable, encoder_of, travel_of
 from ulna.formats.models import Strict, check_kind, fill
+from ulna.formats.numbers import Positive, Uncertainty
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.arrays import F64
@@ -21,7 +22,6 @@ from ulna.uncertainties.performance import Figure, LengthTest, Performance, Poin
 
 WHAT = 'a performance file (TOML, format = "ulna-performance/1")'
 
-Positive = Annotated[float, Field(gt=0)]
 Few = Annotated[int, Field(ge=1, le=1000)]
 
 
@@ -44,7 +44,7 @@ class PerformanceNoise(Strict):
 
     encoder: PositiveEach
     """In the file's angle unit; one number, or one per joint."""
-    seat: Annotated[float, Field(ge=0)] = 0.0
+    seat: Uncertainty = 0.0
     """Of a touch, per coordinate, in the file's length unit."""
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from ulna.arm.arm import Arm
 from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.models import Strict, fill
+from ulna.formats.numbers import Coverage, Uncertainty
 from ulna.formats.table import read_header, read_table
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
@@ -46,7 +46,7 @@ class TemperatureTable(Strict):
 
     value: float
     """°C."""
-    u: Annotated[float, Field(ge=0)] = 0.0
+    u: Uncertainty = 0.0
     """Standard uncertainty, K."""
 
 
@@ -65,7 +65,7 @@ class TaskFile(Strict):
     temperature: TemperatureTable | None = None
     inside: bool = False
     """ball only: a hollow, touched from within."""
-    p: Annotated[float, Field(gt=0.5, lt=1)] = 0.95
+    p: Coverage = 0.95
     """Coverage probability."""
     digits: Literal[1, 2] = 2
     """Significant digits of the uncertainty that a Monte Carlo calculation must settle."""

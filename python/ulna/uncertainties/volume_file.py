@@ -11,6 +11,7 @@ from pydantic import Field
 from ulna.arm.arm import Arm
 from ulna.arm.stated import Box, TravelTable, VolumeTable, travel_of, volume_of
 from ulna.formats.models import Strict, fill
+from ulna.formats.numbers import Coverage, Positive
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.arrays import F64
@@ -23,7 +24,6 @@ from ulna.uncertainties.task_file import TemperatureTable, check_temperature
 
 WHAT = 'a volume file (TOML, format = "ulna-volume/1")'
 
-Positive = Annotated[float, Field(gt=0)]
 Count = Annotated[int, Field(ge=100, le=1_000_000)]
 
 
@@ -47,7 +47,7 @@ class VolumeFile(Strict):
     noise: NoiseTable | None = None
     """In place of what the calibration's study stated."""
     temperature: TemperatureTable | None = None
-    p: Annotated[float, Field(gt=0.5, lt=1)] = 0.95
+    p: Coverage = 0.95
     """Coverage probability."""
 
 

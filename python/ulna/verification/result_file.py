@@ -24,7 +24,7 @@ WHAT = f'a verification.json (format = "{FORMAT}")'
 class Written(BaseModel):
     """A table that Ulna wrote: unknown keys of later versions are kept out of the way."""
 
-    model_config = ConfigDict(strict=True, frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(strict=True, frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 class ValueTable(Written):

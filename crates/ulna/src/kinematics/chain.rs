@@ -1,7 +1,7 @@
 //! An arm's geometry, and what it does beyond it, as the kernels use them.
 
-use super::batch::compliance::Carried;
-use super::batch::harmonics::Amplitudes;
+use super::carried::Carried;
+use super::harmonics::Amplitudes;
 use crate::arm::{Arm, JointModel};
 
 /// One joint's numbers as the kernels use them.

@@ -1,6 +1,6 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
-use super::Pose;
+use super::pose::Pose;
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 

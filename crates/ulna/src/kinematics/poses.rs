@@ -1,7 +1,7 @@
 //! Encoder angles of many poses, in columns, and how warm the arm was.
 
-use super::Sample;
 use super::chain::Link;
+use super::pose::{Pose, Sample};
 use crate::simd::{Columns, Lanes};
 use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
@@ -36,9 +36,9 @@ impl<'a> Angles<'a> {
     }
 
     /// One pose.
-    pub fn pose(self, row: usize, encoders: usize) -> super::Pose<'a> {
+    pub fn pose(self, row: usize, encoders: usize) -> Pose<'a> {
         let width = self.warmth_k.len() * encoders / self.q_rad.len().max(1);
-        super::Pose {
+        Pose {
             q_rad: &self.q_rad[row * encoders..(row + 1) * encoders],
             warmth_k: &self.warmth_k[row * width..(row + 1) * width],
         }

@@ -1,10 +1,10 @@
 //! A problem's parameters: the arm's, then the fitted dimensions of its artefacts; and what is known of them before.
 
-use super::{LEAST_NOISE, MOST_MM, Problem};
+use super::groups::{LEAST_NOISE, MOST_MM, Problem};
+use super::priors::Prior;
 use crate::arm::{Arm, Compliance, JointModel, Unit};
+use crate::artefacts::Dimension;
 use crate::error::{Error, Result};
-use crate::priors::Prior;
-use crate::residuals::Dimension;
 
 /// How many kelvin a workshop's temperature changes, in round figures.
 const SOME_KELVIN: f64 = 10.0;

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
@@ -79,6 +80,7 @@ def with_extras(own: Effects, extras: Sequence[str], orders: Sequence[int]) -> E
     return own
 
 
+@lru_cache(maxsize=4096)  # every fit asks it of every parameter, several times
 def extra_of(parameter: str) -> Extra | None:
     """The block that a parameter belongs to, by its name."""
     own = (extra for extra in EXTRAS if any(fnmatchcase(parameter, pattern) for pattern in PATTERNS[extra]))

@@ -9,7 +9,8 @@ from rich.text import Text
 
 from ulna.arm.effects.effects import extra_of
 from ulna.arm.probes import ProbeView
-from ulna.calibration.result import FitSummary, Parameter, Result
+from ulna.calibration.result import Result
+from ulna.calibration.summary import FitSummary, Parameter
 from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions

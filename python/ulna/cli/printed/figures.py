@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
+from ulna.artefacts.quantities import NAMES
+from ulna.calibration.placements import PlacementFigures, without_repeats
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import figure_mm
 

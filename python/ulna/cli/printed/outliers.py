@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import RenderableType
 from rich.text import Text
 
-from ulna.calibration.result import FitSummary
+from ulna.calibration.summary import FitSummary
 from ulna.cli.printed.tables import heading, listed
 from ulna.ground.digits import figure_mm
 

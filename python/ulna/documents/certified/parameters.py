@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtri
 
-from ulna.calibration.result import Parameter, Result
+from ulna.calibration.result import Result
+from ulna.calibration.summary import Parameter
 from ulna.uncertainties.gum import coverage_factor
 from ulna.uncertainties.regions import coverage_factor_of_region
 

@@ -6,11 +6,9 @@ import math
 from pathlib import Path
 from typing import Any, NoReturn
 
-from ulna.calibration.result_file import ResultFile
 from ulna.documents.certified.parameters import StatedParameters, stated_parameters
 from ulna.documents.sources.result import read_calibration
 from ulna.documents.sources.source import Calibration
-from ulna.formats.models import fill
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 
@@ -31,10 +29,9 @@ def certified_result(path: Path) -> tuple[Calibration, StatedParameters]:
     """
     document, _ = read_json(path, "a result.json")
     check_format(document, path, "ulna-result")
-    fill(ResultFile, document | {"residuals": []}, path)  # those are many; they are checked where they are read
-    _check_overall(document, path)
     calibration = read_calibration(path)
     result = calibration.result
+    _check_overall(document, path)
     if not result.fit.converged:
         raise UlnaInputError(
             f"{path}: key 'fit.converged': the calibration did not converge ({result.fit.termination}); expected one "

@@ -9,7 +9,7 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.study.assembly import warmth_k
 from ulna.study.study import Study
@@ -88,7 +88,7 @@ class _Poses:
                 [-np.einsum("nkj,nk->nj", by_joint[0], along), np.einsum("nkj,nk->nj", by_joint[1], along)]
             )
             self.along_joint_mm: F64 | None = np.sign(change) * np.tile(rows["length_mm"].to_numpy(), 2)[:, None]
-        elif self.kind in SURFACES:
+        elif not kind_of(group.artefact).named:
             self.vector_mm = self.along_joint_mm = None
         else:
             vector_mm = rows.select("x_mm", "y_mm", "z_mm").to_numpy()

@@ -6,13 +6,14 @@ in `Content.missing` that says what would be needed.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ulna.calibration.extras import JudgedExtra
-from ulna.calibration.figures import PlacementFigures
 from ulna.calibration.identify import Identification
-from ulna.calibration.result import FitSummary
+from ulna.calibration.placements import PlacementFigures
+from ulna.calibration.summary import FitSummary
 from ulna.documents.content.acceptance import Verification
 from ulna.documents.content.artefacts import ArtefactRow
 from ulna.documents.content.clouds import Cloud, Quiver
@@ -46,7 +47,7 @@ class Content:
     identification: Identification
     observability: Observability | None
     lengths: Lengths | None
-    placements: list[PlacementFigures]
+    placements: Sequence[PlacementFigures]
     artefacts: list[ArtefactRow]
     environment: Environment
     outliers: list[dict[str, Any]]

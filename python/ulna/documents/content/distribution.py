@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import polars as pl
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
-from ulna.calibration.figures import PlacementFigures
+from ulna.calibration.placements import PlacementFigures
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -40,7 +41,7 @@ class Sample:
     """(N,) the errors, ascending: of a normal distribution a straight line over `quantile`."""
 
 
-def samples(residuals: pl.DataFrame, placements: list[PlacementFigures]) -> list[Sample]:
+def samples(residuals: pl.DataFrame, placements: Sequence[PlacementFigures]) -> list[Sample]:
     """One for each artefact and kind of error, in the order of the artefacts.
 
     Two touches of a bar, one at each end, have one error between them, that of its length; their six components would

@@ -7,7 +7,7 @@ from typing import Any
 
 from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
-from ulna.calibration.figures import figures
+from ulna.calibration.figures import overall_figures
 from ulna.calibration.result import Result
 from ulna.documents.content.quality import QualityRow, quality_rows
 from ulna.documents.languages.said import Said
@@ -45,8 +45,8 @@ def _checked(result: Result, study: Study, path: Path) -> list[Rows]:
     if rows_to_judge(path) != "check":
         return []
     check = Study.load(path, "check")
-    after = figures(result.arm, study_of_arm(check, result.arm))[1]
-    before = figures(start_of(result), study_of_arm(check, result.arm))[1]
+    after = overall_figures(result.arm, study_of_arm(check, result.arm))
+    before = overall_figures(start_of(result), study_of_arm(check, result.arm))
     count = sum(len(group) for group in check.readings)
     return [(quality_rows("check", before, after), [Said("held-out.check", {"readings": count})])]
 

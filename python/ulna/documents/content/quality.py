@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ulna.calibration.figures import Figures
+from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 
 #: quantity → its mean, RMS and largest among the figures; the others have no more than one number

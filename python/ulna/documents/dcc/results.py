@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ulna.calibration.figures import NAMES, Figures
-from ulna.calibration.result import Parameter, Result
+from ulna.artefacts.quantities import NAMES
+from ulna.calibration.placements import Figures
+from ulna.calibration.result import Result
+from ulna.calibration.summary import Parameter
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.quantities import Expanded, Region, quantity, real, real_list
 from ulna.documents.dcc.sheet import Element, Sheet, Texts

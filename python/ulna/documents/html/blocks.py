@@ -12,16 +12,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from ulna.documents.html.markup import inline
 from ulna.documents.languages.text import Text, plain
 from ulna.documents.languages.words import Words
-from ulna.documents.sections.blocks import (
-    Drawings,
-    Facts,
-    Heading,
-    Listed,
-    Paragraph,
-    Table,
-    Tiles,
-    Tone,
-)
+from ulna.documents.sections.blocks import Drawings, Facts, Heading, Listed, Paragraph, Table, Tiles, Tone
 
 
 @dataclass(frozen=True)

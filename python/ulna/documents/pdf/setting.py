@@ -14,17 +14,7 @@ from ulna.documents.pdf import blocks
 from ulna.documents.pdf.drawings import draw
 from ulna.documents.pdf.layout import LAYOUTS
 from ulna.documents.pdf.text import Cell, cell, line
-from ulna.documents.sections.blocks import (
-    Block,
-    Drawing,
-    Drawings,
-    Facts,
-    Heading,
-    Listed,
-    Paragraph,
-    Table,
-    Tone,
-)
+from ulna.documents.sections.blocks import Block, Drawing, Drawings, Facts, Heading, Listed, Paragraph, Table, Tone
 
 #: tone of a paragraph → its style
 STYLES: dict[Tone, str] = {"plain": "plain", "note": "note", "missing": "missing", "good": "plain", "bad": "bad"}

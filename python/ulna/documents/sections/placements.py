@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ulna.calibration.figures import NAMES, PlacementFigures, without_repeats
+from ulna.artefacts.quantities import NAMES
+from ulna.calibration.placements import PlacementFigures, without_repeats
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Text, named
 from ulna.documents.languages.words import Words

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -80,8 +80,6 @@ def columns_of(variables: Sequence[Variable], path: Path) -> list[tuple[str, Col
 @dataclass(frozen=True)
 class ArrayTable(Header):
     """Columns out of named arrays."""
-
-    KEYS: ClassVar[tuple[str, ...]] = ("dataset",)
 
     parts: Mapping[str, Column] = field(repr=False)
     """By the file's name of the column."""

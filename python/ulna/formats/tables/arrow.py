@@ -13,7 +13,7 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.compute
 
-from ulna.formats.cells import names_of
+from ulna.formats.cells import names_of, no_numbers
 from ulna.formats.header import Header, Piece
 from ulna.ground.errors import UlnaInputError
 
@@ -31,11 +31,3 @@ def array_piece(header: Header, batch: Any, numbers: Sequence[str], texts: Seque
     columns += [names_of(pl.Series(name, batch.column(name))) for name in texts]
     frame = header.checked(pl.DataFrame(columns), lambda column: column in numbers, before=before)
     return header.piece(frame, numbers, texts, before)
-
-
-def no_numbers(header: Header, row: int, column: str, value: Any, kind: str) -> str:
-    """The message about a typed column of another type."""
-    return (
-        f"{header.path}: {header.at(row, column)}: got {value!r} ({kind}), expected a number. Write the column as "
-        "floating-point numbers."
-    )

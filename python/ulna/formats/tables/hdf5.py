@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,24 +22,33 @@ from ulna.formats.tables.arrays import (
     no_such_part,
     unreadable,
 )
+from ulna.formats.tables.format import TableFormat
 from ulna.ground.arrays import Texts
 from ulna.ground.errors import UlnaInputError
 
+_MARK = b"\x89HDF\r\n\x1a\n"
+#: a file may begin with a block of somebody else's, of one of these lengths; MATLAB writes 512 bytes
+_OFFSETS = (0, 512, 1024, 2048, 4096, 8192, 16384, 32768)
 _MATLAB_NUMBERS = ("double", "single", "logical", "int", "uint")
 _MOST_LISTED = 1000
+
+
+def _h5py() -> Any:
+    """The library, loaded when there is such a file: that takes longer than to read a study of CSV files."""
+    import h5py
+
+    return h5py
 
 
 @dataclass(frozen=True)
 class Hdf5Table(ArrayTable):
     """Data sets of an HDF5 file."""
 
-    KIND: ClassVar[str] = "an HDF5 or MAT 7.3 file"
 
-
-def open_hdf5(path: Path, what: str, layout: Layout) -> Hdf5Table:
+def open_hdf5(path: Path, start: bytes, what: str, layout: Layout) -> Hdf5Table:
     """The data sets of one group, or one data set. Raises UlnaInputError for a damaged file."""
     try:
-        with h5py.File(path) as file:
+        with _h5py().File(path) as file:
             place = _place(file, layout.dataset)
             if place is None:
                 raise no_such_part(path, layout, _paths(file))
@@ -54,7 +62,7 @@ def open_hdf5(path: Path, what: str, layout: Layout) -> Hdf5Table:
     columns = columns_of(variables, path)
     if not columns:
         raise no_arrays(path, layout, inner)
-    return Hdf5Table(path, [name for name, _ in columns], parts=dict(columns))
+    return Hdf5Table(path, [name for name, _ in columns], parts=dict(columns), what=what)
 
 
 def _place(file: Any, dataset: str | None) -> Any:
@@ -74,15 +82,15 @@ def _paths(file: Any) -> list[str]:
 
 def _variables(path: Path, place: Any) -> tuple[list[Variable], list[str]]:
     """The variables at a place, and the paths of groups further in."""
-    if isinstance(place, h5py.Dataset):
+    if isinstance(place, _h5py().Dataset):
         return _of_dataset(path, place), []
     found: list[Variable] = []
     inner: list[str] = []
     for name in place:
         member = place.get(name)
-        if isinstance(member, h5py.Dataset):
+        if isinstance(member, _h5py().Dataset):
             found += _of_dataset(path, member)
-        elif isinstance(member, h5py.Group) and not name.startswith("#"):  # MATLAB keeps the insides of cells there
+        elif isinstance(member, _h5py().Group) and not name.startswith("#"):  # MATLAB keeps the insides of cells there
             inner.append(member.name)
     return found, inner
 
@@ -103,7 +111,7 @@ def _of_dataset(path: Path, data: Any) -> list[Variable]:
 
 
 def _kind(dtype: Any) -> str:
-    if h5py.check_string_dtype(dtype) is not None:
+    if _h5py().check_string_dtype(dtype) is not None:
         return TEXTS
     if dtype.kind in "fiub":
         return NUMBERS
@@ -113,7 +121,7 @@ def _kind(dtype: Any) -> str:
 
 def _whole(path: Path, place: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
-        with h5py.File(path) as file:
+        with _h5py().File(path) as file:
             return _plain(file[place][()])
 
     return read
@@ -121,7 +129,7 @@ def _whole(path: Path, place: str) -> Callable[[], NDArray[Any]]:
 
 def _field(path: Path, place: str, field: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
-        with h5py.File(path) as file:
+        with _h5py().File(path) as file:
             return _plain(file[place][field])
 
     return read
@@ -156,7 +164,7 @@ def _chars(codes: NDArray[Any]) -> Texts:
 
 def _cell(path: Path, place: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
-        with h5py.File(path) as file:
+        with _h5py().File(path) as file:
             references = file[place][()].T
             texts = np.empty(references.shape, dtype=object)
             for at, reference in np.ndenumerate(references):
@@ -178,3 +186,14 @@ def _cell_text(data: Any) -> str:
         value = float(values.reshape(-1)[0])
         return str(int(value)) if value.is_integer() else str(value)
     raise NoTextError("a cell holds something else than a text or a number")
+
+
+HDF5 = TableFormat(
+    name="HDF5",
+    listed="HDF5",
+    kind="an HDF5 or MAT 7.3 file",
+    endings=(".h5", ".hdf5", ".mat"),
+    keys=("dataset",),
+    recognised=lambda start: any(start.startswith(_MARK, offset) for offset in _OFFSETS),
+    open=open_hdf5,
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,7 @@ from ulna.formats.tables.arrays import (
     no_such_part,
     unreadable,
 )
+from ulna.formats.tables.format import TableFormat
 from ulna.formats.tables.mat5 import DamagedError, Entry, Strange, Struct, entries, value
 from ulna.ground.arrays import Texts
 
@@ -30,10 +31,8 @@ from ulna.ground.arrays import Texts
 class MatTable(ArrayTable):
     """Variables of a MAT file."""
 
-    KIND: ClassVar[str] = "a MAT file"
 
-
-def open_mat(path: Path, what: str, layout: Layout) -> MatTable:
+def open_mat(path: Path, start: bytes, what: str, layout: Layout) -> MatTable:
     """The variables of a file, or the fields of a struct in it. Raises UlnaInputError for a damaged file."""
     try:
         listed = entries(path)
@@ -51,7 +50,7 @@ def open_mat(path: Path, what: str, layout: Layout) -> MatTable:
     columns = columns_of([each for each in variables.values() if each is not None], path)
     if not columns:
         raise no_arrays(path, layout, ["/".join([*steps, name]) for name in structs])
-    return MatTable(path, [name for name, _ in columns], parts=dict(columns))
+    return MatTable(path, [name for name, _ in columns], parts=dict(columns), what=what)
 
 
 def _listed(path: Path, entry: Entry) -> Variable | None:
@@ -129,3 +128,15 @@ def texts_of(cells: NDArray[Any]) -> Texts:
             raise NoTextError("a cell holds something else than a text or a number")
         texts[k] = cell
     return texts.reshape(cells.shape)
+
+
+MAT = TableFormat(
+    name="MAT",
+    listed=".mat",
+    kind="a MAT file",
+    endings=(".mat",),
+    keys=("dataset",),
+    # version and byte order, at the end of the text that the file begins with
+    recognised=lambda start: start[124:128] in (b"\x00\x01IM", b"\x01\x00MI"),
+    open=open_mat,
+)

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, NoReturn
+from typing import NoReturn
 
 import polars as pl
 import polars.exceptions
-import pyarrow as pa
-import pyarrow.parquet
 
-from ulna.formats.cells import WHAT, bad_cell, names_of
+from ulna.formats.cells import bad_cell, names_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
-from ulna.formats.tables.arrow import array_piece, no_numbers
+from ulna.formats.layout import Layout
+from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
 _PAGE_BUFFER_BYTES = 1 << 20
@@ -24,11 +23,9 @@ _PAGE_BUFFER_BYTES = 1 << 20
 class ParquetTable(Header):
     """A table of typed columns."""
 
-    KIND: ClassVar[str] = "a Parquet file"
-
     @property
     def rows(self) -> int:
-        return int(pyarrow.parquet.read_metadata(self.path).num_rows)
+        return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         try:
@@ -49,6 +46,11 @@ class ParquetTable(Header):
         return bad_cell(self, row, column, "" if value is None else str(value), numeric)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
+        import pyarrow.parquet
+
+        from ulna.formats.tables.arrow import array_piece
+
         columns = [*numbers, *texts]
         before = 0
         try:
@@ -63,13 +65,24 @@ class ParquetTable(Header):
 
     def _unreadable(self, error: Exception) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {WHAT}.") from None
+        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}.") from None
 
 
-def open_parquet(path: Path, what: str) -> ParquetTable:
+def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> ParquetTable:
     """Raises UlnaInputError for a damaged file."""
     try:
-        return ParquetTable(path, list(pl.read_parquet_schema(path)))
+        return ParquetTable(path, list(pl.read_parquet_schema(path)), what=what)
     except (polars.exceptions.PolarsError, OSError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None
+
+
+PARQUET = TableFormat(
+    name="Parquet",
+    listed="Parquet",
+    kind="a Parquet file",
+    endings=(".parquet",),
+    keys=(),
+    recognised=lambda start: start.startswith(b"PAR1"),
+    open=open_parquet,
+)

@@ -11,29 +11,25 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, ClassVar, NoReturn
+from typing import Any, NoReturn
 
 import polars as pl
 import polars.exceptions
-import pyarrow as pa
-import pyarrow.csv
 
-from ulna.formats.cells import WHAT, bad_cell, is_decimal_comma, number_of
+from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.tables.arrow import array_piece
+from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
 _BLOCK_BYTES = 1 << 20
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _NAMES = {";": "semicolons", "\t": "tabs"}
 
 
 @dataclass(frozen=True)
 class TextTable(Header):
     """A table of lines."""
-
-    KIND: ClassVar[str] = "a CSV file"
-    KEYS: ClassVar[tuple[str, ...]] = ("separator", "decimal", "header")
 
     lines: int = 1
     """Lines of the header; 0 where the file has none."""
@@ -100,6 +96,10 @@ class TextTable(Header):
     # ------------------------------------------------------------ piece by piece
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
+
+        from ulna.formats.tables.arrow import array_piece
+
         before = 0
         try:
             for batch in self._batches(numbers, texts):
@@ -111,6 +111,9 @@ class TextTable(Header):
             yield from self._forgiving(numbers, texts, before, rows)
 
     def _batches(self, numbers: Sequence[str], texts: Sequence[str]) -> Iterator[Any]:
+        import pyarrow as pa
+        import pyarrow.csv
+
         types = dict.fromkeys(numbers, pa.float64())
         with pyarrow.csv.open_csv(
             self.path,
@@ -199,13 +202,15 @@ class TextTable(Header):
                             raise UlnaInputError(self._refusal(row, name, cells[k], numeric))
         except UnicodeDecodeError as error:
             raise UlnaInputError(
-                f"{self.path}: the file is not UTF-8 text (byte 0x{error.object[error.start]:02x}); expected {WHAT}. "
-                "Save it as UTF-8."
+                f"{self.path}: the file is not UTF-8 text (byte 0x{error.object[error.start]:02x}); expected "
+                f"{self.what}. Save it as UTF-8."
             ) from None
         except csv.Error as error:
             # A cell of 131072 characters is what follows a quotation mark that nobody closes.
             what = "a quotation mark is not closed" if "field limit" in str(error) else str(error)
-            raise UlnaInputError(f"{self.path}: {self.where(row + 1)}: {what}; expected {WHAT}. Correct it.") from None
+            raise UlnaInputError(
+                f"{self.path}: {self.where(row + 1)}: {what}; expected {self.what}. Correct it."
+            ) from None
         return last
 
     def _wrong_count(self, row: int, cells: list[str], numbers: int) -> NoReturn:
@@ -227,15 +232,13 @@ class TextTable(Header):
 
     def _unreadable(self, error: Exception) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {WHAT}. Correct it.") from None
+        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}. Correct it.") from None
 
 
 def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
     """A CSV file by its first bytes. Raises UlnaInputError for what is no text, or not written as the layout says."""
-    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if start.startswith(_UTF16):
         raise UlnaInputError(f"{path}: the file is UTF-16; expected {what} in UTF-8. Save it as UTF-8.")
-    if b"\x00" in start:
-        raise UlnaInputError(f"{path}: the file is binary; expected {what}.")
     try:
         line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
     except UnicodeDecodeError:
@@ -253,6 +256,7 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
     return TextTable(
         path,
         names,
+        what=what,
         lines=int(layout.header),
         separator=separator,
         decimal=layout.decimal or ".",
@@ -279,3 +283,15 @@ def _check_separator(path: Path, line: str, separator: str, layout: Layout) -> N
                 f"{path}: line 1: the columns are separated by {words}; expected commas, and numbers with a decimal "
                 f"point. Say {key}{comma}, or export the table again with commas between columns and points in numbers."
             )
+
+
+TEXT = TableFormat(
+    name="CSV",
+    listed="CSV with a header",
+    kind="a CSV file",
+    endings=(".csv", ".txt", ".tsv", ".dat"),
+    keys=("separator", "decimal", "header"),
+    # UTF-16 is told as what it is
+    recognised=lambda start: b"\x00" not in start or start.startswith(_UTF16),
+    open=open_text,
+)

@@ -12,7 +12,7 @@ import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import polars as pl
 from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, SheetTypeEnum
@@ -20,18 +20,17 @@ from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, Shee
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
+from ulna.formats.tables.format import TableFormat
 from ulna.formats.tables.workbook_cell import address, stored_cell
 from ulna.ground.errors import UlnaInputError, nearest
 
+_ZIP, _OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
 
 
 @dataclass(frozen=True)
 class SheetTable(Header):
     """One sheet of a workbook, read whole."""
-
-    KIND: ClassVar[str] = "an Excel workbook"
-    KEYS: ClassVar[tuple[str, ...]] = ("sheet", "header")
 
     sheet: str
     lines: int
@@ -122,9 +121,9 @@ def _name(value: Cell) -> str | None:
     return str(value) or None
 
 
-def open_workbook(path: Path, what: str, layout: Layout) -> SheetTable:
+def open_workbook(path: Path, start: bytes, what: str, layout: Layout) -> SheetTable:
     """One sheet of a workbook. Raises UlnaInputError for other archives, damaged ones, and a sheet left open."""
-    _check_kind(path, what)
+    _check_kind(path, start, what)
     try:
         workbook = CalamineWorkbook.from_path(path)
         names = [each.name for each in workbook.sheets_metadata if each.typ == SheetTypeEnum.WorkSheet]
@@ -144,14 +143,13 @@ def _unreadable(path: Path, what: str, error: Exception) -> UlnaInputError:
     )
 
 
-def _check_kind(path: Path, what: str) -> None:
+def _check_kind(path: Path, start: bytes, what: str) -> None:
     """What else is a zip archive, or was once an Excel workbook."""
-    with path.open("rb") as stream:
-        if not stream.read(4).startswith(b"PK"):
-            raise UlnaInputError(
-                f"{path}: this is an old Excel workbook (.xls), or one with a password; expected {what}. Save it as "
-                ".xlsx without a password."
-            )
+    if start.startswith(_OLD):
+        raise UlnaInputError(
+            f"{path}: this is an old Excel workbook (.xls), or one with a password; expected {what}. Save it as .xlsx "
+            "without a password."
+        )
     try:
         with zipfile.ZipFile(path) as archive:
             inside = set(archive.namelist())
@@ -219,3 +217,14 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
         places=used,
         merged=list(sheet.merged_cell_ranges or ()),
     )
+
+
+EXCEL = TableFormat(
+    name="Excel",
+    listed=".xlsx",
+    kind="an Excel workbook",
+    endings=(".xlsx", ".xlsm"),
+    keys=("sheet", "header"),
+    recognised=lambda start: start.startswith((_ZIP, _OLD)),
+    open=open_workbook,
+)

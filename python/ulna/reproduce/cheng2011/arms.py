@@ -9,7 +9,8 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
-from ulna.simulation.reading_errors import ReadingErrors, VirtualArm
+from ulna.simulation.reading_errors import ReadingErrors
+from ulna.simulation.virtual_arm import VirtualArm
 
 _QUARTER = math.pi / 2
 

@@ -127,7 +127,7 @@ def repeat_experiment(seed: int, repeats: int, progress: Progress | None) -> Rep
 def _touch_bars(arm: Arm, count: int, seed: int, rng: np.random.Generator) -> F64:
     """(count, 2, 7) encoder readings with the ball in both seats of a bar that is put in `count` random places."""
     of = virtual(arm)
-    ends_mm = of.places(BAR_ENDS_MM, count, seed, rng)
+    ends_mm = of.places(BAR_ENDS_MM, count, rng)
     return of.touch(ends_mm.reshape(-1, 3), seed, rng).reshape(count, 2, arm.n)
 
 
@@ -152,7 +152,7 @@ def _straight_probe(calibrated: Arm, truth: Arm, seed: int, rng: np.random.Gener
     guess = Probe(0.0, 0.0, 220.0)
     start = replace(calibrated, probes={"bent": guess})
     of = virtual(truth)
-    seat_mm = of.places(BAR_ENDS_MM, 1, seed, rng)[0, :1]  # one place within reach
+    seat_mm = of.places(BAR_ENDS_MM, 1, rng)[0, :1]  # one place within reach
     q_rad = of.touch(np.repeat(seat_mm, SEAT_POSES, axis=0), seed, rng)
     problem = _core.Problem(start.core, np.full(truth.n, ENCODER_RAD), SEAT_MM)
     none = np.zeros(SEAT_POSES, dtype=np.int64)

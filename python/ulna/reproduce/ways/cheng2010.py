@@ -15,7 +15,7 @@ from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import WRONG_MM, Trial, calibrate, start_of
 from ulna.reproduce.ways.wang2007 import ARMS_FRAME
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work
-from ulna.simulation.reading_errors import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 
 def _probe(truth: VirtualArm, seed: int) -> Trial:

@@ -16,7 +16,7 @@ from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, sh
 from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import Trial, start_of
 from ulna.reproduce.ways.work import REPEATS, outcome_dicts, outcomes_table, write_json
-from ulna.simulation.reading_errors import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 WORKS = (shimojima2002, santolaria2010, wang2007, gao2009, wang2010, cheng2010)
 

@@ -18,7 +18,8 @@ from ulna.calibration.result import Result
 from ulna.ground.arrays import F64
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
-from ulna.simulation.reading_errors import VirtualArm, as_drawn
+from ulna.simulation.reading_errors import as_drawn
+from ulna.simulation.virtual_arm import VirtualArm
 from ulna.study.assembly import assemble
 from ulna.study.data import FitOptions, Noise
 from ulna.study.study import Study
@@ -108,10 +109,10 @@ def search_alone(truth: VirtualArm, start: Arm, readings: Readings, **fit: Any) 
 def errors_of(arm: Arm, truth: VirtualArm, seed: int) -> Errors:
     """Of fresh bars and fresh points, the same for every way with the same seed."""
     rng = np.random.default_rng([seed, 2])
-    ends_mm = truth.places(BAR_ENDS_MM, FRESH_BARS, seed, rng)
+    ends_mm = truth.places(BAR_ENDS_MM, FRESH_BARS, rng)
     q_rad = truth.touch(ends_mm.reshape(-1, 3), seed, rng)
     length_mm, true_length_mm = _lengths_mm(arm, q_rad), _lengths_mm(truth.arm, q_rad)
-    anywhere = truth.poses(FRESH_POINTS, rng)
+    anywhere = truth.anywhere(FRESH_POINTS, rng)
     true_mm, found_mm = truth.arm.tip(anywhere), arm.tip(anywhere)
     true_mm, found_mm = true_mm - true_mm.mean(axis=0), found_mm - found_mm.mean(axis=0)
     turn, _ = Rotation.align_vectors(true_mm, found_mm)

@@ -17,11 +17,9 @@ from ulna.arm.arm import Arm
 from ulna.arm.joint import MOST_RAD
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
+from ulna.formats.wording import SHOWN, counted, rows_named
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-
-#: rows named in a remark
-SHOWN = 5
 
 
 def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
@@ -88,31 +86,10 @@ def remark_limits(q_rad: F64, row: I64, letter: str, arm: Arm, path: Path, remar
             continue
         worst = rows[np.argmax(np.maximum(low - column[rows], column[rows] - high))]
         remarks.append(
-            f"{path}: column '{letter}{k + 1}': {_count(len(rows), 'reading')} outside the "
-            f"limits of joint {k + 1} ({low:g} to {high:g} rad): {_rows(row[rows])}; the farthest is "
+            f"{path}: column '{letter}{k + 1}': {counted(len(rows), 'reading')} outside the "
+            f"limits of joint {k + 1} ({low:g} to {high:g} rad): {rows_named(row[rows])}; the farthest is "
             f"{column[worst]:.6g} rad in row {row[worst]}. Check the limits in the arm file, or the "
             "readings."
-        )
-
-
-def check_bar_ends(group: Readings, files: list[InputFile], study: Path) -> None:
-    """A placement of a bar tells a length only where both of its seats were touched. Raises UlnaInputError."""
-    if group.artefact.kind != "bar":
-        return
-    code = group.placement_code
-    names = list(group.artefact.features)
-    touched = np.array([np.bincount(code[group.feature == k], minlength=code.max() + 1) for k in range(len(names))])
-    for k, name in enumerate(names):
-        without = np.flatnonzero(touched[k] == 0)
-        if not len(without):
-            continue
-        rows = np.flatnonzero(code == without[0])
-        more = f" (and {len(without) - 1} more such placements)" if len(without) > 1 else ""
-        raise UlnaInputError(
-            f"{study}: artefact '{group.artefact.name}', placement '{group.placement[rows[0]]}'{more}: feature "
-            f"'{name}' was never touched, only '{names[1 - k]}' ({_rows(group.row[rows])} of "
-            f"{files[group.file[rows[0]]].path}); expected readings at both ends of a bar. Touch the other end too, "
-            "remove these rows, or declare a seat for them."
         )
 
 
@@ -146,7 +123,7 @@ def check_repeats(group: Readings, files: list[InputFile], remarks: list[str], o
         own = [(k, first) for k, first in copies if group.file[k] == index]
         named = [f"{group.row[k]} (as {_place(group, files, first, index)})" for k, first in own[:SHOWN]]
         remarks.append(
-            f"{files[index].path}: {_count(len(own), 'row')} of artefact '{group.artefact.name}' "
+            f"{files[index].path}: {counted(len(own), 'row')} of artefact '{group.artefact.name}' "
             f"repeat{'s' * (len(own) == 1)} another exactly: row{'s' * (len(own) > 1)} "
             f"{', '.join(named)}{', …' if len(own) > SHOWN else ''}. They count as readings of their own; remove them "
             "if they are copies."
@@ -187,12 +164,3 @@ def _contradiction(
 def _place(group: Readings, files: list[InputFile], k: int, index: int) -> str:
     other = int(group.file[k])
     return f"row {group.row[k]}" + ("" if other == index else f" of {files[other].path}")
-
-
-def _rows(rows: I64) -> str:
-    named = ", ".join(str(row) for row in rows[:SHOWN].tolist())
-    return f"row{'s' * (len(rows) > 1)} {named}{', …' if len(rows) > SHOWN else ''}"
-
-
-def _count(count: int, noun: str) -> str:
-    return f"{count} {noun}{'s' * (count > 1)}"

@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 from pydantic import Field
 
+from ulna.artefacts.kinds import KINDS
 from ulna.formats.header import Header
 from ulna.formats.layout import TableKeys
 from ulna.formats.rows import Condition, SplitTable
@@ -24,17 +25,20 @@ NAMES = ("id", "probe", "artefact", "placement", "feature")
 
 COORDINATES = ("x", "y", "z", "u")
 
+MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if kind.measured_column is not None))
+"""Distances that are measured along with a row."""
+
 
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return re.fullmatch(r"[qp][0-9]+|length|temperature[0-9]*|[xyzu]", column) is not None
+    return column in MEASURED or re.fullmatch(r"[qp][0-9]+|temperature[0-9]*|[xyzu]", column) is not None
 
 
 def known_columns(joints: int, coordinates: bool) -> list[str]:
     """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
     their own."""
     several = [f"{name}{k}" for name in ("q", "p", "temperature") for k in range(1, joints + 1)]
-    return [*NAMES, "length", "temperature", *several, *(COORDINATES if coordinates else ())]
+    return [*NAMES, *MEASURED, "temperature", *several, *(COORDINATES if coordinates else ())]
 
 
 def check_columns(

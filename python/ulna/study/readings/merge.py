@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.own_points import has_own_points, joined_points
@@ -30,7 +32,7 @@ def merge(parts: list[Readings], artefacts: dict[str, Artefact], files: list[Inp
 
 def _name_placements(own: list[Readings], artefact: Artefact, study: Path) -> None:
     unnamed = [part for part in own if part.placement[0] == ""]
-    matters = artefact.kind != "length" and artefact.frame == "free"
+    matters = kind_of(artefact).placed(artefact)
     if unnamed and len(own) > 1 and matters:
         raise UlnaInputError(
             f"{study}: artefact '{artefact.name}' is in {len(own)} readings files, and not all of them say which "
@@ -38,7 +40,7 @@ def _name_placements(own: list[Readings], artefact: Artefact, study: Path) -> No
             "[[readings]] table: the same label where the artefact was not moved in between. Add it."
         )
     for part in unnamed:
-        part.placement[:] = "1"
+        part.placement = Labels.all_alike("1", len(part))
 
 
 def _with_one_artefact(own: list[Readings], files: list[InputFile]) -> list[Readings]:
@@ -59,7 +61,7 @@ def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
         length_mm=of("length_mm"),
         probe=of("probe"),
         feature=of("feature"),
-        placement=of("placement"),
+        placement=Labels.joined([part.labels for part in own]),
         row=of("row"),
         file=of("file"),
         id=of("id"),

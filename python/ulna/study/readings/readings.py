@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.artefact import SURFACES, Artefact
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
@@ -95,14 +96,13 @@ def _part(
     units: Units,
     remarks: list[str],
 ) -> Readings:
-    pairs = "p1" in frame.columns
-    if pairs != (artefact.kind == "length"):
+    pairs, kind = "p1" in frame.columns, kind_of(artefact)
+    if pairs != (kind.poses == 2):
         raise UlnaInputError(
             f"{header.path}: {header.where(int(row[0]))}: artefact '{artefact.name}' is of kind '{artefact.kind}', "
             "but the file "
             + ("gives two poses a row (columns p1, …)" if pairs else "gives one pose a row (no columns p1, …)")
-            + "; expected two poses and their distance a row for kind 'length', else one. Correct the kind or the "
-            "columns."
+            + f"; expected {'two poses' if kind.poses == 2 else 'one pose'} a row. Correct the kind or the columns."
         )
     feature: I64 | None = None
     if has_own_points(artefact):
@@ -114,7 +114,8 @@ def _part(
     if pairs:
         p_rad = angles(frame, "p", factors)
         check_scale(p_rad, "p", factors, source.entry.angle or units.angle, header, row)
-        length_mm = _lengths(frame, row, artefact, header, source, units)
+    if kind.measured_column is not None:
+        length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
     return Readings(
         artefact=artefact,
         q_rad=q_rad,
@@ -155,19 +156,24 @@ def angle_factors(source: Source, arm: Arm, units: Units) -> F64:
     return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in arm.joints])
 
 
-def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, units: Units) -> F64:
-    if "length" not in frame.columns:
+def _measured(
+    column: str, frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, units: Units
+) -> F64:
+    """(N,) mm: the distance that was measured along with each row."""
+    if column not in frame.columns:
         if artefact.length_mm is None:
+            between = "between the two poses" if kind_of(artefact).poses == 2 else "that was measured"
+            give = f", or give artefact.{artefact.name}.length in {source.study}" if column == "length" else ""
             raise UlnaInputError(
-                f"{header.path}: the column 'length' is missing; expected the distance between the two poses of each "
-                f"row, in {units.length}. Add it, or give artefact.{artefact.name}.length in {source.study}."
+                f"{header.path}: the column '{column}' is missing; expected the distance {between} of each row, in "
+                f"{units.length}. Add it{give}."
             )
         return np.full(len(row), artefact.length_mm)
-    lengths = frame["length"].to_numpy()
+    lengths = frame[column].to_numpy()
     if (lengths < 0).any():
         first = int(np.argmax(lengths < 0))
         raise UlnaInputError(
-            f"{header.path}: {header.at(int(row[first]), 'length')}: got {lengths[first]:g}, expected a "
+            f"{header.path}: {header.at(int(row[first]), column)}: got {lengths[first]:g}, expected a "
             "distance of 0 or more. Correct it."
         )
     return lengths * units.mm
@@ -176,7 +182,7 @@ def _lengths(frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, 
 def _features(
     frame: pl.DataFrame, row: I64, artefact: Artefact, header: Header, source: Source, remarks: list[str]
 ) -> I64:
-    if artefact.kind == "length" or artefact.kind in SURFACES:
+    if not kind_of(artefact).named:
         return np.zeros(len(row), dtype=np.int64)
     known = list(artefact.features)
     return each_row(
@@ -184,19 +190,15 @@ def _features(
     )
 
 
-def _placements(
-    frame: pl.DataFrame, row: I64, source: Source, header: Header, remarks: list[str]
-) -> NDArray[np.object_]:
+def _placements(frame: pl.DataFrame, row: I64, source: Source, header: Header, remarks: list[str]) -> Labels:
     """(N,) str. With neither column nor key the whole file is one standing; "" says so until files are merged."""
     if "placement" not in frame.columns:
-        return np.full(len(row), source.entry.placement or "", dtype=object)
+        return Labels.all_alike(source.entry.placement or "", len(row))
     remark_unused(frame, header, source, "placement", remarks)
-    # Run by run, and one str object for each label: a million Python strings would outweigh the numbers.
-    runs = frame["placement"].rle().struct
-    seen: dict[str, str] = {}
-    labels = np.array([seen.setdefault(label, label) for label in runs.field("value")], dtype=object)
-    placements: NDArray[np.object_] = np.repeat(labels, runs.field("len").to_numpy())
-    return placements
+    runs = frame["placement"].rle().struct  # readings of one standing mostly follow each other
+    names = runs.field("value").unique(maintain_order=True)
+    code = runs.field("value").replace_strict(names, pl.int_range(len(names), eager=True), return_dtype=pl.Int64)
+    return Labels(np.repeat(code.to_numpy(), runs.field("len").to_numpy()), names.to_list())
 
 
 def _temperatures(frame: pl.DataFrame, joints: int) -> F64 | None:

@@ -69,5 +69,5 @@ ARTICULATION = TestKind(
     limits={"L_Dia": 0.060},
     length_errors=False,
     words=(),
-    examples=(ArticulationTest(kind="articulation", orientations=3, points=5),),
+    examples=lambda: [ArticulationTest(kind="articulation", orientations=3, points=5)],
 )

@@ -81,5 +81,5 @@ EFFECTIVE_DIAMETER = TestKind(
     limits={"Diameter_max": 0.040},
     length_errors=False,
     words=(),
-    examples=(DiameterTest(kind="effective-diameter", repeats=3, points=9),),
+    examples=lambda: [DiameterTest(kind="effective-diameter", repeats=3, points=9)],
 )

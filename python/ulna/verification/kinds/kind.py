@@ -24,8 +24,7 @@ class TestTable(Strict):
 
     __test__ = False  # no test of pytest's
 
-    kind: str
-    """Each kind has a table of its own, where this is a `Literal` of its name."""
+    kind: str  # each kind has a table of its own, where this is a Literal of its name
 
 
 Table = TypeVar("Table", bound=TestTable)
@@ -55,7 +54,7 @@ class TestKind(Generic[Table]):
     """Whether its first figure is of errors of lengths, which are drawn over the length."""
     words: tuple[str, ...]
     """Keys of the reports' words that only its part of a report needs."""
-    examples: tuple[Table, ...]
+    examples: Callable[[], Sequence[Table]]
     """Small tables, one of each variant: what the contract suite plays."""
 
     @property
@@ -76,12 +75,21 @@ class TestKind(Generic[Table]):
             yield "its table has no docstring: say which figures it gives, and of what"
         if self.length_errors and not self.words:
             yield "it draws errors over lengths, but names no words for that: name their keys"
-        if not self.examples:
+
+    def check(self) -> None:
+        """Whether examples have figures and steps, and limits are of figures. Raises TypeError with all that is not."""
+        missing = list(self._unfit(self.examples()))
+        if missing:
+            raise TypeError(f"acceptance test '{self.name}': {'; '.join(missing)}")
+
+    def _unfit(self, examples: Sequence[Table]) -> Iterable[str]:
+        if not examples:
             yield "it has no examples: give a small table of each variant, which the contract suite plays"
-        known = {figure.key for table in self.examples for figure in self.figures(table)}
-        for table in self.examples:
+        for table in examples:
             if not self.figures(table):
                 yield "it has no figures: name what it gives, with a formula and a source"
+            self.listed("example", table)
+        known = {figure.key for table in examples for figure in self.figures(table)}
         for key in self.limits.keys() - known:
             yield f"it has an example of a limit for '{key}', which no example gives: name that figure, or remove it"
 

@@ -106,8 +106,8 @@ LENGTH = TestKind(
     limits={"E_Uni": {"a": 0.040, "b": 40000.0}, "E_Bi": {"a": 0.050, "b": 40000.0}},
     length_errors=True,
     words=WORDS,
-    examples=(
+    examples=lambda: [
         LengthTest(kind="length", direction="uni", lengths=2, positions=2, repeats=2, longest_share=0.5),
         LengthTest(kind="length", direction="bi", lengths=2, positions=2, repeats=1),
-    ),
+    ],
 )

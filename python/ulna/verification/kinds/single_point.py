@@ -100,10 +100,10 @@ SINGLE_POINT = TestKind(
     limits={"SPAT_2S": 0.060},
     length_errors=False,
     words=(),
-    examples=(
+    examples=lambda: [
         SinglePointTest(
             kind="single-point", positions=3, points=5, figures=["asme"], shares=[[0, 0.2], [0.4, 0.6], [0.8, 1]]
         ),
         SinglePointTest(kind="single-point", positions=1, points=5, figures=["faro"]),
-    ),
+    ],
 )

@@ -62,5 +62,5 @@ SPHERE = TestKind(
     limits={"P_Size": 0.040, "P_Form": 0.080},
     length_errors=False,
     words=(),
-    examples=(SphereTest(kind="sphere", positions=2, points=9),),
+    examples=lambda: [SphereTest(kind="sphere", positions=2, points=9)],
 )

@@ -105,5 +105,5 @@ VOLUMETRIC = TestKind(
     limits={"Volumetric_max": 0.080, "Volumetric_2S": 0.080},
     length_errors=True,
     words=WORDS,
-    examples=(VolumetricTest(kind="volumetric", positions=6, lengths=2, shares=[[0.5, 0.75], [0.8, 1.0]]),),
+    examples=lambda: [VolumetricTest(kind="volumetric", positions=6, lengths=2, shares=[[0.5, 0.75], [0.8, 1.0]])],
 )

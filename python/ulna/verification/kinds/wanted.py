@@ -10,8 +10,8 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
+from ulna.artefacts.surface import GOLDEN
 from ulna.ground.arrays import F64
-from ulna.simulation.touches import GOLDEN
 from ulna.verification.kinds.steps import Step
 
 BALL_MM = 25.0

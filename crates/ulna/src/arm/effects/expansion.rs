@@ -1,7 +1,7 @@
 //! Links that grow with temperature.
 
-use super::Effect;
-use crate::arm::Unit;
+use super::effect::Effect;
+use crate::arm::unit::Unit;
 
 /// `a_i`, `d_i` and, of the last joint, the tip, scaled by `1 + ε_i (T_i - 20 °C)`.
 #[derive(Debug, Clone, PartialEq)]

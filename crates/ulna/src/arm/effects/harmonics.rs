@@ -1,7 +1,7 @@
 //! Eccentric encoders: an error that repeats with the encoder's turn.
 
-use super::Effect;
-use crate::arm::Unit;
+use super::effect::Effect;
+use crate::arm::unit::Unit;
 
 /// `q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i` in place of each encoder angle `q_i`.
 #[derive(Debug, Clone, PartialEq)]
