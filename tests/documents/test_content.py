@@ -77,7 +77,9 @@ def test_distribution_is_that_of_scipy(lengths, of_lengths):
     assert np.allclose(sample.quantile, theory, atol=1e-12)
     assert np.allclose(sample.ordered_mm, ordered, atol=1e-12)
     assert sample.sigma_mm == pytest.approx(np.std(error, ddof=1), rel=1e-9)
-    assert np.allclose(sample.counts, np.histogram(error, sample.edges_mm)[0])
+    # the outermost errors are the edges, up to the rounding of two ways to compute them
+    within = error.clip(sample.edges_mm[0], sample.edges_mm[-1])
+    assert np.allclose(sample.counts, np.histogram(within, sample.edges_mm)[0])
     assert sample.counts.sum() == len(error)
     assert len(sample.edges_mm) == len(np.histogram_bin_edges(error, bins="fd"))
 
