@@ -6,13 +6,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from ulna.arm.effects.effects import Extra
 from ulna.arm.stated import AmountEach, PositiveEach, TravelTable, VolumeTable
 from ulna.artefacts.kinds import SimulatedTable
 from ulna.formats.models import Strict
 from ulna.formats.numbers import Amount, Positive
 from ulna.formats.units import Units
-from ulna.study.data import Loss
+from ulna.study.tables import FittedTable
 
 
 class DrawingTable(Strict):
@@ -62,16 +61,8 @@ class MissedTable(Strict):
     """How far off the ball is."""
 
 
-class SimulatedFit(Strict):
+class SimulatedFit(FittedTable):
     """[fit] of the study that is written."""
-
-    hold: list[str] = Field(default_factory=list)
-    free: list[str] = Field(default_factory=lambda: ["*"])
-    loss: Loss = "none"
-    start: Literal["given", "search"] = "given"
-    extras: list[Extra] = Field(default_factory=list)
-    harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
-    judge_extras: bool = True
 
 
 class SimulationFile(Strict):

@@ -51,8 +51,8 @@ PriorValue = Annotated[
 ]
 
 
-class FitTable(Strict):
-    """What is fitted, and how."""
+class FittedTable(Strict):
+    """What is fitted."""
 
     hold: list[str] = Field(default_factory=list)
     """Not fitted: shell-style patterns over parameter names."""
@@ -66,11 +66,16 @@ class FitTable(Strict):
     """Blocks of the model beyond geometry; each is judged by readings left out."""
     harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
     """Orders of the encoders' harmonics, where extras ask for them."""
+    judge_extras: bool = True
+    """Whether extras are judged by cross-validation; false saves its time."""
+
+
+class FitTable(FittedTable):
+    """What is fitted, and how."""
+
     prior: dict[str, PriorValue] = Field(default_factory=dict)
     """Pattern of parameter names = standard deviation around the arm file's value, or { value, u }, in the study's
     units."""
-    judge_extras: bool = True
-    """Whether extras are judged by cross-validation; false saves its time."""
     method: Method = "lm"
     """"annealing" or "evolution": first a search of a box around the start without derivatives."""
     budget: Annotated[int, Field(ge=100, le=1_000_000_000)] = 100_000
