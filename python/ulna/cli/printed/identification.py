@@ -13,20 +13,11 @@ from ulna.arm.arm import Arm
 from ulna.arm.directions import combination, sentence
 from ulna.calibration.identify import Identification
 from ulna.cli.printed.tables import heading, listed
+from ulna.documents.languages.text import plain
+from ulna.documents.languages.words import Words
 from ulna.ground.digits import uncertainty
 
-_CAUSES = {
-    "base-frame": "the base frame",
-    "scale": "the scale",
-    "probe-on-axis": "a tip on the last axis",
-    "probe-unused": "a probe that no reading uses",
-    "joint-still": "a joint that does not move",
-    "parallel-axes": "parallel axes",
-    "redundant-link": "a link that says what the tip says",
-    "temperature-still": "a temperature that does not change",
-    "no-moment": "gravity along an axis",
-    "coverage": "the choice of poses",
-}
+ENGLISH = Words("en")
 
 
 def identification_report(found: Identification, arm: Arm) -> list[RenderableType]:
@@ -61,13 +52,18 @@ def directions(found: Identification) -> list[RenderableType]:
 
 
 def _lost(direction: Mapping[str, Any]) -> Sequence[str]:
-    cause = _CAUSES.get(direction.get("cause", ""), direction.get("cause", ""))
+    cause = _cause(str(direction.get("cause", "")))
     frame = " No length or shape depends on it." if direction.get("frame") else ""
     return (
         f"{combination(direction['combination'])}{f'   ({cause})' if cause else ''}",
         f"Why: {sentence(direction['because'])}{frame}",
         f"Remedy: {sentence(direction['remedy'])}",
     )
+
+
+def _cause(key: str) -> str:
+    """In the words of reports; a cause that a later core found has none yet."""
+    return plain(ENGLISH(f"cause.{key}")) if key and ENGLISH.has(f"cause.{key}") else key
 
 
 def _weak(direction: Mapping[str, Any]) -> Sequence[str]:

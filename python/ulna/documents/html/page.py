@@ -56,7 +56,7 @@ def render(content: Content, language: str = "en") -> str:
     macros: Any = env.get_template("blocks.html.jinja").make_module(
         {"draw": lambda drawing: _drawn(draw(drawing, content, words), drawn)}
     )
-    scripts = [_plotly(), asset("figures.js")]
+    scripts = [_plotly(), asset("plots.js")]
     page = env.from_string(asset("page.html.jinja"))
     return page.render(
         words=words,
@@ -66,7 +66,7 @@ def render(content: Content, language: str = "en") -> str:
         style=Markup(asset("style.css")),
         sections={key: found for key, found in _sections(content, words).items() if found},
         set=lambda block: getattr(macros, macro_of(block))(block),
-        figures=lambda: Markup(json_in_script([_data(plot) for plot in drawn])),
+        plots_data=lambda: Markup(json_in_script([_data(plot) for plot in drawn])),
         scripts=[Markup(script) for script in scripts],
     )
 

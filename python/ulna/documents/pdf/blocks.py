@@ -1,4 +1,4 @@
-"""What the template can set, as JSON: headings, paragraphs, tables, facts, figures. All text is strings."""
+"""What the template can set, as JSON: headings, paragraphs, tables, facts, plots. All text is strings."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ def facts(rows: Iterable[tuple[Cell, Sequence[Cell]]]) -> Block:
     return {"kind": "facts", "rows": [[what, list(values)] for what, values in rows]}
 
 
-def figure(svg: str, caption: str) -> dict[str, str]:
+def plot(svg: str, caption: str) -> dict[str, str]:
     """A picture with its caption, which is also what a screen reader says."""
     return {"svg": svg, "caption": caption}
 
 
-def figures(found: Sequence[dict[str, str]], columns: int) -> Block:
+def plots(found: Sequence[dict[str, str]], columns: int) -> Block:
     """Pictures side by side."""
-    return {"kind": "figures", "figures": list(found), "columns": columns}
+    return {"kind": "plots", "plots": list(found), "columns": columns}

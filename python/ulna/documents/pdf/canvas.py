@@ -21,7 +21,7 @@ from ulna.ground.style import STYLE
 INCH_MM = 25.4
 WIDTH_MM = 170.0
 HALF_MM = 82.0
-"""Of a figure with another beside it."""
+"""Of a plot with another beside it."""
 
 
 @contextmanager

@@ -77,14 +77,14 @@ def _table(to: Setting, it: Table) -> blocks.Block:
 
 
 def _drawings(to: Setting, it: Drawings) -> blocks.Block:
-    return blocks.figures([_figure(to, each) for each in it.drawings], 2 if it.narrow else 1)
+    return blocks.plots([_plot(to, each) for each in it.drawings], 2 if it.narrow else 1)
 
 
-def _figure(to: Setting, drawing: Drawing) -> dict[str, str]:
+def _plot(to: Setting, drawing: Drawing) -> dict[str, str]:
     """Where a heading stands above a plot on the screen, it begins the caption on paper."""
     svg, said = draw(drawing, to.content, to.words)
     heading: Text = (*drawing.heading, ":") if drawing.heading else ()
-    return blocks.figure(svg, to.line(joined([heading, drawing.caption, *said], " ")))
+    return blocks.plot(svg, to.line(joined([heading, drawing.caption, *said], " ")))
 
 
 #: kind of block → how it is set

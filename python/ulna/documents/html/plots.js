@@ -1,4 +1,4 @@
-/* Draws the figures of a report in the colours of the theme, and pictures of them for paper. */
+/* Draws the plots of a report in the colours of the theme, and pictures of them for paper. */
 "use strict";
 (function () {
   var light = {
@@ -12,14 +12,14 @@
   var NARROW = 480;
   var root = document.documentElement;
   var system = window.matchMedia("(prefers-color-scheme: dark)");
-  var figures = JSON.parse(document.getElementById("figure-data").textContent);
+  var plots = JSON.parse(document.getElementById("plot-data").textContent);
   /* only these buttons: Plotly has one that sends the readings to its maker's server */
   var flat = ["zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"];
   var solid = ["orbitRotation", "zoom3d", "pan3d", "resetCameraDefault3d"];
 
-  function configOf(figure) {
+  function configOf(plot) {
     return {
-      responsive: true, displaylogo: false, plotlyServerURL: "", modeBarButtons: [figure.solid ? solid : flat]
+      responsive: true, displaylogo: false, plotlyServerURL: "", modeBarButtons: [plot.solid ? solid : flat]
     };
   }
 
@@ -43,8 +43,8 @@
     return value;
   }
 
-  function layoutOf(figure, colours) {
-    var layout = coloured(figure.layout, colours);
+  function layoutOf(plot, colours) {
+    var layout = coloured(plot.layout, colours);
     layout.paper_bgcolor = layout.plot_bgcolor = "rgba(0,0,0,0)";
     layout.font = { color: colours.ink, size: 12, family: getComputedStyle(document.body).fontFamily };
     layout.hoverlabel = { align: "left" };
@@ -60,22 +60,22 @@
     if (layout.xaxis && layout.xaxis.dtick === 1 && layout.xaxis.tickangle) { layout.xaxis.showticklabels = false; }
   }
 
-  function draw(figure) {
+  function draw(plot) {
     var colours = isDark() ? dark : light;
-    var place = document.getElementById("plot-" + figure.name);
-    var layout = layoutOf(figure, colours);
+    var place = document.getElementById("plot-" + plot.name);
+    var layout = layoutOf(plot, colours);
     if (place.clientWidth < NARROW) { narrowed(layout); }
-    return Plotly.react(place, coloured(figure.data, colours), layout, configOf(figure));
+    return Plotly.react(place, coloured(plot.data, colours), layout, configOf(plot));
   }
 
   /* printing starts when the browser says so, so the pictures are made before */
-  function picture(figure) {
-    var place = document.getElementById("plot-" + figure.name);
+  function picture(plot) {
+    var place = document.getElementById("plot-" + plot.name);
     var height = parseInt(place.style.height, 10);
     var width = place.closest(".grid") ? 430 : 860;
-    var sheet = { data: coloured(figure.data, light), layout: layoutOf(figure, light) };
-    var options = { format: figure.solid ? "png" : "svg", width: width, height: height };
-    if (figure.solid) { options.scale = 2; }
+    var sheet = { data: coloured(plot.data, light), layout: layoutOf(plot, light) };
+    var options = { format: plot.solid ? "png" : "svg", width: width, height: height };
+    if (plot.solid) { options.scale = 2; }
     return Plotly.toImage(sheet, options).then(function (source) {
       var image = document.createElement("img");
       image.alt = "";
@@ -89,10 +89,10 @@
   function inTurn(work, then) {
     var k = 0;
     function next() {
-      if (k >= figures.length) { if (then) { then(); } return; }
-      var figure = figures[k++];
-      Promise.resolve().then(function () { return work(figure); }).catch(function (error) {
-        console.error(figure.name, error);
+      if (k >= plots.length) { if (then) { then(); } return; }
+      var plot = plots[k++];
+      Promise.resolve().then(function () { return work(plot); }).catch(function (error) {
+        console.error(plot.name, error);
       }).then(function () { setTimeout(next, 0); });
     }
     next();
