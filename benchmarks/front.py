@@ -1,6 +1,6 @@
 """``python -m benchmarks.front``: what files, checks, tables and commands add to what the core does, in one run.
 
-Writes docs/benchmarks/front.md: a calibration from Python beside the core's fit of the same readings; the command beside
+Writes docs/benchmarks/front.md: a calibration from Python beside the core's fit of the same readings; the command by
 a process that loads NumPy and Polars and ends; the command on 10⁵ bars beside the core's fit of them. Options: --quick
 (10⁴ bars, nothing written), --million (10⁶ bars too).
 """

@@ -15,8 +15,8 @@ from ulna import Result, UlnaInputError
 from ulna.calibration import result as result_module
 from ulna.calibration.result_file import ResultFile
 
-FOSSIL = Path(__file__).parent / "data" / "fossils" / "result-1.json"
-MANY = Path(__file__).parent / "data" / "fossils" / "result-1-many"
+FOSSIL = Path(__file__).parents[1] / "data" / "fossils" / "result-1.json"
+MANY = Path(__file__).parents[1] / "data" / "fossils" / "result-1-many"
 BESIDE = {"residuals.parquet", "artefacts.parquet"}
 
 
