@@ -179,7 +179,9 @@ def test_readings_outside_the_limits_are_told_with_their_rows(tmp_path: Path) ->
     q = angles(10)
     q[:, 3] = 0.0
     q[4, 3] = 2.5
-    with pytest.warns(InputWarning, match=r"column 'q4': 1 reading.* outside .* joint 4 \(rows? 5\)"):
+    with pytest.warns(
+        InputWarning, match=r"column 'q4': 1 reading outside .* joint 4 .*: row 5; the farthest is 2\.5 rad"
+    ):
         ulna.measure(arm(limits_rad=(-2.0, 2.0)), write(tmp_path / "r.csv", q))
 
 

@@ -99,17 +99,16 @@ class Placements(Sequence[PlacementFigures]):
         cls, artefact: str, kind: str, placements: Sequence[str], readings: Any, columns: Mapping[str, F64]
     ) -> Placements:
         """Those of one artefact. readings: (P,) numbers of rows; columns: figure → (P,), NaN where there is none."""
-        alike: dict[str, str] = {"artefact": artefact, "kind": kind}
-        table = pl.DataFrame(
-            {"placement": pl.Series(placements, dtype=pl.String), "readings": readings}
-            | {name: pl.Series(column, nan_to_null=True) for name, column in columns.items()}
-        )
-        return cls(
-            table.select(
-                pl.col(name).cast(dtype) if name in table.columns else pl.lit(alike.get(name), dtype).alias(name)
-                for name, dtype in SCHEMA.items()
-            )
-        )
+        rows = len(placements)
+        given: dict[str, Any] = {
+            "artefact": pl.Series([artefact]).new_from_index(0, rows),
+            "placement": pl.Series(placements, dtype=pl.String),
+            "kind": pl.Series([kind]).new_from_index(0, rows),
+            "readings": readings,
+        }
+        given |= {name: pl.Series(column, nan_to_null=True) for name, column in columns.items()}
+        lacking = pl.Series([None], dtype=pl.Float64).new_from_index(0, rows)
+        return cls(pl.DataFrame({name: given.get(name, lacking) for name in SCHEMA}, schema=SCHEMA))
 
     @classmethod
     def joined(cls, parts: Sequence[Placements]) -> Placements:

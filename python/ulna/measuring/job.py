@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 from ulna.arm.arm import Arm
 from ulna.arm.covariance_file import noise_of_result
 from ulna.arm.file import WHAT
-from ulna.arm.joint import MOST_RAD
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, read_header, stream
@@ -23,13 +21,12 @@ from ulna.formats.toml import check_format, read_json
 from ulna.formats.units import MM_PER
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
-from ulna.study.readings.columns import check_columns, known_columns
+from ulna.study.readings.checks import Outside, check_scale
+from ulna.study.readings.columns import check_columns, known_columns, temperature_columns
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 
 F64 = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
-
-_SHOWN_ROWS = 5
 
 
 class MeasureJob:
@@ -79,8 +76,7 @@ class MeasureJob:
                 f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
                 "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
             )
-        self._outside: dict[int, list[int]] = {}
-        self._outside_count: dict[int, int] = {}
+        self._outside = Outside(self.arm, "q")
         self.rows = 0
 
     @property
@@ -96,8 +92,7 @@ class MeasureJob:
         for piece in self._pieces():
             self._angles(piece)
             self._probes(piece)
-        self._outside.clear()
-        self._outside_count.clear()
+        self._outside = Outside(self.arm, "q")
 
     def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
         """The output in pieces. Warns with InputWarning of readings outside the joints' limits."""
@@ -109,7 +104,8 @@ class MeasureJob:
                 progress("measure", self.rows, total)
         if not self.rows:
             raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
-        self._warn_outside()
+        for remark in self._outside.remarks(self.header.path):
+            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=2)
 
     @property
     def notes(self) -> list[str]:
@@ -143,22 +139,9 @@ class MeasureJob:
     def _angles(self, piece: Piece) -> F64:
         q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
         q_rad = q if self._angle == "rad" else q * self._rad_per
-        if max(q_rad.max(), -q_rad.min()) > MOST_RAD:
-            row, k = (int(at[0]) for at in np.nonzero(np.abs(q_rad) > MOST_RAD))
-            asked = {"rad": "degrees or counts", "deg": "counts", "counts": "radians or degrees"}[self._angle]
-            raise UlnaInputError(
-                f"{self.header.path}: {self.header.at(piece.before + row + 1, self._q[k])}: got "
-                f"{q[row, k]:g} {self._angle}, more than two turns; expected angles within ±4π rad (720°). Are these "
-                f"{asked}? Say which with --angle."
-            )
-        for k, joint in enumerate(self.arm.joints):
-            if joint.limits_rad is not None:
-                low, high = joint.limits_rad
-                out = (q_rad[:, k] < low) | (q_rad[:, k] > high)
-                if out.any():
-                    rows = self._outside.setdefault(k, [])
-                    rows += (np.flatnonzero(out)[:_SHOWN_ROWS] + piece.before + 1).tolist()
-                    self._outside_count[k] = self._outside_count.get(k, 0) + int(out.sum())
+        row = np.arange(piece.before + 1, piece.before + len(q) + 1)
+        check_scale(q_rad, "q", self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
+        self._outside.add(q_rad, row)
         return q_rad
 
     def _warmth_k(self, piece: Piece) -> F64 | None:
@@ -173,7 +156,7 @@ class MeasureJob:
             if self._temperature_c is not None:
                 remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
             return []
-        found = [name for name in self.header.columns if re.fullmatch("temperature[0-9]*", name)]
+        found = temperature_columns(self.header, self.arm.n)
         if not found and self._temperature_c is None:
             raise UlnaInputError(
                 f"{self.header.path}: no column 'temperature', but the links of arm '{self.arm.name}' grow with it; "
@@ -181,7 +164,7 @@ class MeasureJob:
             )
         if found and self._temperature_c is not None:
             remarks.append(f"{self.header.path}: the temperature given for all is not used: the file has its own.")
-        return found if found == ["temperature"] else [f"temperature{k + 1}" for k in range(len(found))]
+        return found
 
     def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
         if self._probe is not None:
@@ -226,18 +209,6 @@ class MeasureJob:
                     "need. Add it to the arm file."
                 )
         return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
-
-    def _warn_outside(self) -> None:
-        for k, rows in sorted(self._outside.items()):
-            low, high = self.arm.joints[k].limits_rad or (-math.inf, math.inf)
-            count = self._outside_count[k]
-            shown = ", ".join(str(row) for row in rows[:_SHOWN_ROWS]) + (", …" if count > _SHOWN_ROWS else "")
-            warnings.warn(
-                f"{self.header.path}: column 'q{k + 1}': {count} readings outside the limits {low:g} … {high:g} rad of "
-                f"joint {k + 1} (rows {shown}). They are measured all the same; check the angles or the limits.",
-                InputWarning,
-                stacklevel=2,
-            )
 
 
 def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:

@@ -30,17 +30,24 @@ def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
         raise UlnaInputError(f"{path}: key 'probe': {error} Correct it.") from None
 
 
-def check_scale(q_rad: F64, letter: str, factors: F64, unit: str, header: Header, row: I64) -> None:
-    """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit."""
+def check_scale(
+    q_rad: F64,
+    letter: str,
+    factors: F64,
+    unit: str,
+    header: Header,
+    row: I64,
+    remedy: str = "State the unit with the key 'angle'.",
+) -> None:
+    """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit; remedy: how
+    the unit is stated here. Raises UlnaInputError."""
     for k, factor in enumerate(factors):
         column = q_rad[:, k]
         if max(column.max(), -column.min()) <= MOST_RAD:
             continue
         first = int(np.argmax(np.abs(column) > MOST_RAD))
         asked = {"rad": "degrees or counts", "deg": "counts", "counts": "counts, and is counts_per_turn right"}[unit]
-        remedy = (
-            "Correct counts_per_turn or the column." if unit == "counts" else "State the unit with the key 'angle'."
-        )
+        remedy = "Correct counts_per_turn or the column." if unit == "counts" else remedy
         raise UlnaInputError(
             f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got "
             f"{column[first] / factor:g} {unit}, more than two turns; expected angles within ±4π rad (720°). Are "
@@ -76,21 +83,51 @@ def check_limits(group: Readings, arm: Arm, files: list[InputFile], remarks: lis
 
 def remark_limits(q_rad: F64, row: I64, letter: str, arm: Arm, path: Path, remarks: list[str]) -> None:
     """The same of (N, n) readings of one file, in the rows (N,) and the columns q1 … or p1 … of it."""
-    for k, joint in enumerate(arm.joints):
-        if joint.limits_rad is None:
-            continue
-        low, high = joint.limits_rad
-        column = q_rad[:, k]
-        rows = np.flatnonzero((column < low) | (column > high))
-        if not len(rows):
-            continue
-        worst = rows[np.argmax(np.maximum(low - column[rows], column[rows] - high))]
-        remarks.append(
-            f"{path}: column '{letter}{k + 1}': {counted(len(rows), 'reading')} outside the "
-            f"limits of joint {k + 1} ({low:g} to {high:g} rad): {rows_named(row[rows])}; the farthest is "
-            f"{column[worst]:.6g} rad in row {row[worst]}. Check the limits in the arm file, or the "
-            "readings."
-        )
+    outside = Outside(arm, letter)
+    outside.add(q_rad, row)
+    remarks += outside.remarks(path)
+
+
+class Outside:
+    """Readings of one file outside the limits of an arm's joints, gathered from as many pieces as it comes in."""
+
+    def __init__(self, arm: Arm, letter: str) -> None:
+        self._joints, self._letter = arm.joints, letter
+        self._count = [0] * arm.n
+        self._first: list[list[int]] = [[] for _ in arm.joints]
+        self._farthest = [(0.0, 0.0, 0)] * arm.n
+
+    def add(self, q_rad: F64, row: I64) -> None:
+        """(N, n) more readings, in the rows (N,)."""
+        for k, joint in enumerate(self._joints):
+            if joint.limits_rad is None:
+                continue
+            low, high = joint.limits_rad
+            column = q_rad[:, k]
+            rows = np.flatnonzero((column < low) | (column > high))
+            if not len(rows):
+                continue
+            off_rad = np.maximum(low - column[rows], column[rows] - high)
+            worst = int(np.argmax(off_rad))
+            found = (float(off_rad[worst]), float(column[rows[worst]]), int(row[rows[worst]]))
+            self._farthest[k] = max(self._farthest[k], found, key=lambda each: each[0])
+            self._count[k] += len(rows)
+            self._first[k] += row[rows[: SHOWN + 1 - len(self._first[k])]].tolist()
+
+    def remarks(self, path: Path) -> list[str]:
+        """What is said of them, joint by joint."""
+        said = []
+        for k, joint in enumerate(self._joints):
+            if joint.limits_rad is None or not self._count[k]:
+                continue
+            low, high = joint.limits_rad
+            _, value, at = self._farthest[k]
+            said.append(
+                f"{path}: column '{self._letter}{k + 1}': {counted(self._count[k], 'reading')} outside the "
+                f"limits of joint {k + 1} ({low:g} to {high:g} rad): {rows_named(np.array(self._first[k]))}; the "
+                f"farthest is {value:.6g} rad in row {at}. Check the limits in the arm file, or the readings."
+            )
+        return said
 
 
 def check_repeats(group: Readings, files: list[InputFile], remarks: list[str], own_points: bool = False) -> None:

@@ -41,6 +41,12 @@ def known_columns(joints: int, coordinates: bool) -> list[str]:
     return [*NAMES, *MEASURED, "temperature", *several, *(COORDINATES if coordinates else ())]
 
 
+def temperature_columns(header: Header, joints: int) -> list[str]:
+    """Those that say how warm it was, of a header that is checked: one, or one for each joint in order, or none."""
+    each = ["temperature", *(f"temperature{k}" for k in range(1, joints + 1))]
+    return [name for name in each if name in header.columns]
+
+
 def check_columns(
     header: Header,
     joints: int,
