@@ -43,7 +43,7 @@ _WAITS = (
 def arm() -> ulna.Arm:
     """The arm that the other benchmarks fit, at its start."""
     links = TRUTH[:24].reshape(6, 4)
-    joints = [ulna.Joint(*map(float, (theta0, alpha, a, d))) for theta0, alpha, a, d in links]
+    joints = [ulna.Joint(theta0, alpha, a, d) for theta0, alpha, a, d in links.tolist()]
     there = ulna.Arm("benchmark", (*joints, ulna.Joint()), {"bent": ulna.Probe(*map(float, TRUTH[24:]))})
     return there.with_parameters(START)
 
