@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use shared::{Dropped, TABLE_2, arm, best};
 use std::f64::consts::PI;
-use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics};
+use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics};
 use ulna::assembly::Assembly;
 use ulna::inverse::{Limits, posture_for_point};
 use ulna::kinematics::{Angles, tip_mm};
@@ -169,6 +169,7 @@ fn main() {
     for (name, effects) in [
         ("harmonics 1", Effects { harmonics: Some(Harmonics::zero(&[1], 7)), ..Effects::default() }),
         ("harmonics 1, 2", Effects { harmonics: Some(Harmonics::zero(&[1, 2], 7)), ..Effects::default() }),
+        ("backlash", Effects { backlash: Some(Backlash { rad: vec![1e-5; 7] }), ..Effects::default() }),
         ("expansion", Effects { expansion: Some(Expansion { per_kelvin: vec![1e-5; 7] }), ..Effects::default() }),
         ("compliance", Effects { compliance: Some(compliance), ..Effects::default() }),
     ] {

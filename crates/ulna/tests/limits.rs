@@ -3,6 +3,7 @@
 mod common;
 
 use common::{any_arm, rng};
+use ulna::kinematics::Angles;
 use ulna::problem::Problem;
 use ulna::residuals::Noise;
 use ulna::residuals::length::LengthRows;
@@ -33,7 +34,7 @@ fn a_length_that_is_none_is_refused() {
         let arm = any_arm(&mut rng(1), 5);
         let mut problem = Problem::new(arm, None).unwrap();
         let rows =
-            LengthRows { q_rad: &[0.1; 5], p_rad: &[0.2; 5], warmth_k: &[], probe: &[0], length_mm: &[length_mm] };
+            LengthRows { from: Angles::cold(&[0.1; 5]), to: Angles::cold(&[0.2; 5]), probe: &[0], length_mm: &[length_mm] };
         let message = problem.add_lengths("bar", rows, 0.0, false).unwrap_err().to_string();
         assert!(message.starts_with("a length of artefact bar, mm, is "), "{message}");
     }

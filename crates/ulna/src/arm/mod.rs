@@ -8,7 +8,10 @@ pub mod effects;
 mod joint;
 
 use crate::error::{Error, Result};
-pub use effects::{Body, Compliance, Effects, Expansion, Harmonics};
+pub use effects::{
+    Array, Backlash, Body, Compliance, Effect, Effects, Expansion, Harmonics, Lost, Seen, Stated, Unseen,
+};
+pub(crate) use effects::{Encoder, EncoderLanes};
 pub use joint::{Joint, JointModel};
 
 /// A probe: a name and the tip, a point that turns with the last joint.
@@ -200,11 +203,31 @@ impl Arm {
         units
     }
 
+    /// How far a unit of each parameter moves the tip of an arm of some reach at the most, in round figures, mm.
+    pub fn moves_mm(&self, reach_mm: f64) -> Vec<f64> {
+        let of_geometry = |unit: &Unit| if *unit == Unit::Rad { reach_mm } else { 1.0 };
+        let mut moves: Vec<f64> = self.parameter_units()[..self.geometry_count()].iter().map(of_geometry).collect();
+        for effect in self.effects.all() {
+            moves.resize(moves.len() + effect.values().len(), effect.moves_mm(reach_mm));
+        }
+        moves
+    }
+
+    /// Standard uncertainty of each parameter before any reading, where lengths and angles are known so well.
+    pub fn known(&self, length_mm: f64, angle_rad: f64) -> Vec<f64> {
+        let of_geometry = |unit: &Unit| if *unit == Unit::Rad { angle_rad } else { length_mm };
+        let mut known: Vec<f64> = self.parameter_units()[..self.geometry_count()].iter().map(of_geometry).collect();
+        for effect in self.effects.all() {
+            known.resize(known.len() + effect.values().len(), effect.known(angle_rad));
+        }
+        known
+    }
+
     /// All parameters, in [`Arm::parameter_units`].
     pub fn parameters(&self) -> Vec<f64> {
         let joints = self.joints.iter().flat_map(Joint::parameters);
         let tips = self.probes.iter().flat_map(|p| p.tip_mm);
-        joints.chain(tips).chain(self.effects.all().flat_map(|effect| effect.values())).collect()
+        joints.chain(tips).chain(self.effects.all().flat_map(|effect| effect.values()).copied()).collect()
     }
 
     /// The same arm with other numbers.

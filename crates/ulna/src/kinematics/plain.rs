@@ -60,7 +60,7 @@ impl<'a> Posed<'a> {
         let rigid: Vec<f64> = (0..n).map(|i| signs[i] * pose.q_rad[i] - theta0(i)).collect();
         let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, &rigid));
         let turn = |i: usize| {
-            let added = effects.harmonics.as_ref().map_or(0.0, |h| signs[i] * h.added_rad(i, pose.q_rad[i]));
+            let added = signs[i] * effects.added_rad(i, pose.encoder(i));
             let given = weight.as_ref().map_or(0.0, |w| w.rad_per_nm(i) * w.moment_nm(i));
             rigid[i] + added + given
         };
@@ -132,11 +132,9 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
         jacobian.set_column(at, &column);
         at += 1;
     };
-    for (i, sign) in arm.signs().enumerate() {
-        for &k in arm.effects().harmonics.iter().flat_map(|h| &h.orders) {
-            let angle = f64::from(k) * posed.pose.q_rad[i];
-            next(posed.by_turn(i) * sign * angle.cos());
-            next(posed.by_turn(i) * sign * angle.sin());
+    for effect in arm.effects().on_encoder() {
+        for (i, sign) in arm.signs().enumerate() {
+            effect.shapes(posed.pose.encoder(i)).into_iter().for_each(|shape| next(posed.by_turn(i) * sign * shape));
         }
     }
     for i in 0..arm.effects().expansion.as_ref().map_or(0, |e| e.per_kelvin.len()) {
@@ -157,7 +155,7 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
 pub fn encoder_jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matrix3xX<f64> {
     let posed = Posed::new(arm, probe, pose.into());
     let columns = arm.signs().enumerate().map(|(i, sign)| {
-        let slope = arm.effects().harmonics.as_ref().map_or(0.0, |h| h.slope(i, posed.pose.q_rad[i]));
+        let slope = arm.effects().slope(i, posed.pose.encoder(i));
         let given = posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
         sign * (posed.by_turn(i) * (1.0 + slope) + given)
     });

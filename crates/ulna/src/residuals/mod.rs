@@ -11,7 +11,7 @@ pub mod surface;
 mod tile;
 mod touches;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, Seen};
 use crate::error::{Error, Result};
 use crate::kinematics::batch::scratch_len;
 use crate::kinematics::{Chain, Sample};
@@ -197,8 +197,8 @@ pub trait Readings: Debug + Send + Sync {
     /// Poses of the readings, at most about `most` of them.
     fn samples(&self, most: usize) -> Vec<Sample>;
 
-    /// Lowest and highest temperature above 20 °C, where it is known.
-    fn warmth_range_k(&self) -> Option<(f64, f64)>;
+    /// What they show of what the arm's effects depend on.
+    fn seen(&self) -> Seen;
 
     /// The same readings, exact at these parameters, with new noise, and dimensions calibrated anew.
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;

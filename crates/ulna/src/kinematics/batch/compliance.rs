@@ -14,7 +14,6 @@ use pulp::Simd;
 /// What an arm carries, as the kernels use it.
 #[derive(Debug, Clone)]
 pub(in crate::kinematics) struct Carried {
-    pub(in crate::kinematics) rad_per_nm: Vec<f64>,
     /// mass times centre of the body that moves with each joint, kg mm
     first_moments: Vec<[f64; 3]>,
     /// mass of all that moves with each joint, kg
@@ -28,7 +27,6 @@ impl Carried {
         let bodies = &compliance.bodies;
         let beyond = |i: usize| bodies[i..].iter().map(|body| body.mass_kg).sum();
         Carried {
-            rad_per_nm: compliance.rad_per_nm.clone(),
             first_moments: bodies.iter().map(|body| body.centre_mm.map(|c| c * body.mass_kg)).collect(),
             masses: (0..bodies.len()).map(beyond).collect(),
             pull: compliance.pull(),

@@ -13,6 +13,7 @@ use super::rows::{Eliminated, Layout, Place};
 use super::tile::{Directions, TILE, Tile};
 use super::touches::{TouchRows, Touches};
 use super::{At, Dimension, Noise, Readings, Unknowns, Unweighted, Weighing, Whitened, Writer, normal, shared};
+use crate::arm::Seen;
 use crate::error::Result;
 use crate::kinematics::Sample;
 use crate::simd::{Columns, Lanes, padded};
@@ -312,8 +313,8 @@ impl<S: Shape> Readings for Surface<S> {
         self.touches.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.touches.poses.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.touches.poses.seen()
     }
 
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
