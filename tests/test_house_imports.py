@@ -59,9 +59,18 @@ LAYER = {name: number for number, names in enumerate(PYTHON_LAYERS) for name in 
 #: doors that stand below the files for the user's sake: Arm.load, Arm.save, Study.load; they import inside the function
 DOORS = {("model", "files"), ("study", "files")}
 
-#: Rust modules of the core that know no kinematics
-BLIND = ("solver", "covariance", "numdiff")
-RUST_ORDER = ["arm", "kinematics", "residuals", "problem", "calibrate"]
+#: rooms of the Rust core, from the ground up: each uses only what stands on floors below its own
+RUST_FLOORS = [
+    {"error", "monitor", "seeds", "simd"},
+    {"arm", "solver", "design"},
+    {"kinematics"},
+    {"artefacts"},
+    {"problem"},
+    {"identify"},
+    {"fit"},
+]
+#: what a file of the core defines: a door (mod.rs, lib.rs) has none of these, it only names and hands on
+RUST_ITEM = re.compile(r"^(?:pub(?:\([^)]*\))? )?(?:fn|struct|enum|trait|impl|const|static|type)\b", re.MULTILINE)
 
 
 def python_modules(root: Path) -> list[Path]:
@@ -140,37 +149,140 @@ def test_python_rooms_of_one_layer_form_no_circle(root):
         visit(room, ())
 
 
-def rust_rooms(root: Path) -> list[tuple[str, Path]]:
+Module = tuple[str, ...]
+
+
+def rust_files(root: Path) -> dict[Module, Path]:
+    """Every file of the core by its module: ``("solver", "gram")``."""
     source = root / "crates" / "ulna" / "src"
-    return sorted((path.relative_to(source).with_suffix("").parts[0], path) for path in source.rglob("*.rs"))
-
-
-def rust_uses(text: str) -> set[str]:
-    """Modules of the core that a file names as `crate::…`, tests and comments left out."""
-    code = re.sub(r"//[^\n]*", "", text.split("#[cfg(test)]")[0])
-    found = set(re.findall(r"\bcrate::([a-z_]+)", code))
-    for group in re.findall(r"\bcrate::\{([^;]*)\};", code):
-        found |= set(re.findall(r"(?:^|,)\s*([a-z_]+)", re.sub(r"\{[^{}]*\}", "", group)))
+    found = {}
+    for path in source.rglob("*.rs"):
+        parts = path.relative_to(source).with_suffix("").parts
+        found[parts[:-1] if parts[-1] in ("mod", "lib") else parts] = path
     return found
 
 
-def test_rust_imports_run_one_way(root):
-    wrong = []
-    for room, path in rust_rooms(root):
-        if room not in RUST_ORDER:
-            continue
-        above = set(RUST_ORDER[RUST_ORDER.index(room) + 1 :])
-        wrong += [f"{path.relative_to(root)} uses crate::{name}" for name in rust_uses(path.read_text()) & above]
+def rust_code(path: Path) -> str:
+    """What a file says to the compiler, its tests and comments left out."""
+    return re.sub(r"//[^\n]*", "", re.split(r"#\[cfg\(test\)\]\n(?:pub\(crate\) )?mod ", path.read_text())[0])
+
+
+def rust_paths(tree: str) -> list[str]:
+    """The paths of a `use` tree: ``a::{b, c::{d}}`` is a::b and a::c::d."""
+    group = re.fullmatch(r"(?:([\w:]*?)::)?\{(.*)\}", tree.strip(), re.DOTALL)
+    if group is None:
+        return [tree.split(" as ")[0].strip()] if tree.strip() else []
+    parts, depth = [""], 0
+    for letter in group[2]:
+        depth += (letter == "{") - (letter == "}")
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [f"{group[1]}::{path}" if group[1] else path for part in parts for path in rust_paths(part)]
+
+
+def rust_uses(codes: dict[Module, str]) -> dict[Module, set[Module]]:
+    """Which files each file uses; what a door hands on is used where it is defined."""
+    handed: dict[Module, dict[str, list[str]]] = {}
+    for module, code in codes.items():
+        for tree in re.findall(r"\bpub(?:\([^)]*\))? use ([^;]+);", code):
+            handed.setdefault(module, {}).update({p.split("::")[-1]: p.split("::") for p in rust_paths(tree)})
+
+    def resolved(module: Module, path: list[str]) -> Module | None:
+        at, rest = module, path
+        if path[0] == "crate":
+            at, rest = (), path[1:]
+        elif path[0] != "super" and (*module, path[0]) not in codes:
+            return None
+        while rest and rest[0] == "super":
+            at, rest = at[:-1], rest[1:]
+        while rest and (*at, rest[0]) in codes:
+            at, rest = (*at, rest[0]), rest[1:]
+        passed_on = handed.get(at, {}).get(rest[0]) if rest else None
+        return at if passed_on is None else resolved(at, passed_on)
+
+    uses: dict[Module, set[Module]] = {}
+    for module, code in codes.items():
+        trees = re.findall(r"\buse ([^;]+);", code)
+        inline = re.findall(r"\b((?:crate|super)(?:::\w+)+)", re.sub(r"\buse [^;]+;|pub\(in [^)]*\)", "", code))
+        paths = [path.split("::") for tree in trees for path in rust_paths(tree)] + [i.split("::") for i in inline]
+        uses[module] = {there for path in paths if (there := resolved(module, path)) not in (None, module)}
+    return uses
+
+
+def circle(edges: dict[Module, set[Module]]) -> list[Module]:
+    """One circle among the edges, if there is any."""
+    done: set[Module] = set()
+
+    def visit(node: Module, trail: list[Module]) -> list[Module]:
+        if node in trail:
+            return [*trail[trail.index(node) :], node]
+        found: list[Module] = []
+        if node not in done:
+            found = next((c for to in sorted(edges.get(node, ())) if (c := visit(to, [*trail, node]))), [])
+            done.add(node)
+        return found
+
+    return next((found for node in sorted(edges) if (found := visit(node, []))), [])
+
+
+@pytest.fixture
+def rust(root):
+    files = rust_files(root)
+    codes = {module: rust_code(path) for module, path in files.items()}
+    doors = {module for module, path in files.items() if path.name in ("mod.rs", "lib.rs")}
+    uses = {module: there for module, there in rust_uses(codes).items() if module not in doors}
+    return codes, doors, uses
+
+
+def test_every_rust_room_is_on_one_floor(rust):
+    codes, _, _ = rust
+    rooms = [room for floor in RUST_FLOORS for room in sorted(floor)]
+    assert sorted({module[0] for module in codes if module}) == sorted(rooms), "give each room its floor"
+
+
+def test_rust_imports_run_one_way(rust):
+    _, _, uses = rust
+    floor = {room: number for number, rooms in enumerate(RUST_FLOORS) for room in rooms}
+    arrows = {(module, to) for module, there in uses.items() for to in there if module[0] != to[0]}
+    assert len(arrows) > 100, "the check sees hardly any import"
+    wrong = sorted(f"{'::'.join(a)} uses {'::'.join(b)}" for a, b in arrows if floor[a[0]] <= floor[b[0]])
     assert wrong == []
 
 
-@pytest.mark.parametrize("room", BLIND)
-def test_rust_rooms_that_know_no_kinematics(root, room):
-    files = [path for name, path in rust_rooms(root) if name == room]
-    assert files, f"there is no room {room} any more: mend this test"
-    knowing = set(RUST_ORDER) | {"inverse", "identifiability"}
-    wrong = [f"{path.relative_to(root)}: {name}" for path in files for name in rust_uses(path.read_text()) & knowing]
-    assert wrong == []
+def test_rust_doors_are_thin(rust):
+    codes, doors, uses = rust
+    thick = {"::".join(module): RUST_ITEM.findall(codes[module]) for module in doors}
+    assert {module: items for module, items in thick.items() if items} == {}
+    assert {"::".join(module): there & doors for module, there in uses.items() if there & doors} == {}
+
+
+def test_rust_files_and_folders_form_no_circle(rust):
+    codes, _, uses = rust
+    assert circle(uses) == []
+    for folder in sorted({module[:depth] for module in codes for depth in range(len(module))}):
+        inside: dict[Module, set[Module]] = {}
+        depth = len(folder)
+        for module, there in uses.items():
+            if module[:depth] == folder != module:
+                others = {to[: depth + 1] for to in there if to[:depth] == folder != to}
+                inside.setdefault(module[: depth + 1], set()).update(others - {module[: depth + 1]})
+        assert circle(inside) == [], f"among the parts of {'::'.join(folder) or 'the core'}"
+
+
+def test_the_rust_check_sees_a_circle_and_what_a_door_hands_on():
+    codes = {
+        ("a",): "mod b;\npub use b::{Thing, Other};",
+        ("a", "b"): "use super::c::{helper, deep::{One, Two}};",
+        ("a", "c"): "use crate::a::Thing;",
+        ("d",): "fn f() { crate::a::Other::new() }",
+    }
+    uses = rust_uses(codes)
+    assert uses[("a", "b")] == {("a", "c")}
+    assert uses[("a", "c")] == {("a", "b")}
+    assert uses[("d",)] == {("a", "b")}
+    assert circle(uses) != []
 
 
 def test_core_is_pure_rust(root):

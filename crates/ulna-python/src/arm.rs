@@ -3,14 +3,12 @@
 use crate::arrays::{Told, array1, array2, indices, rows, slice};
 use crate::build::{self, Stateable};
 use crate::errors::{UlnaError, raise};
-use numpy::{
-    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn,
-};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use ulna::arm::Effects;
-use ulna::inverse::{Limits, postures_for_points};
+use ulna::kinematics::inverse::{Limits, postures_for_points};
 use ulna::kinematics::{self, Angles, Chain, Poses, batch};
 use ulna::simd::Columns;
 
@@ -217,6 +215,7 @@ impl Arm {
     }
 
     #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None, approach=None))]
+    #[allow(clippy::too_many_arguments)]
     fn tip_covariance<'py>(
         &self,
         py: Python<'py>,
@@ -234,11 +233,13 @@ impl Arm {
             return Err(UlnaError::new_err("the covariance is not square"));
         }
         let poses = read.angles();
-        let out = py.detach(|| ulna::propagate::tip_covariance(&self.inner, probe, poses, &columns, &covariance));
+        let out =
+            py.detach(|| ulna::kinematics::propagate::tip_covariance(&self.inner, probe, poses, &columns, &covariance));
         array2(py, out, 6)
     }
 
     #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None, approach=None))]
+    #[allow(clippy::too_many_arguments)]
     fn direction_effect<'py>(
         &self,
         py: Python<'py>,
@@ -253,7 +254,8 @@ impl Arm {
         let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
         let poses = read.angles();
-        let out = py.detach(|| ulna::propagate::direction_effect(&self.inner, probe, poses, &columns, &directions));
+        let out = py
+            .detach(|| ulna::kinematics::propagate::direction_effect(&self.inner, probe, poses, &columns, &directions));
         Ok(array1(py, &out))
     }
 
@@ -300,7 +302,7 @@ impl Arm {
     ) -> PyResult<f64> {
         self.probe(probe)?;
         let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
-        Ok(ulna::propagate::check_jacobian(&self.inner, probe, read.angles()))
+        Ok(ulna::kinematics::propagate::check_jacobian(&self.inner, probe, read.angles()))
     }
 }
 

@@ -8,9 +8,9 @@ use crate::problem::Problem;
 use crate::watch::Watch;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use ulna::calibrate::{self, Options, Start};
-use ulna::identifiability::Known;
-use ulna::monte_carlo::{self, Repeat};
+use ulna::fit::calibrate::{self, Options, Start};
+use ulna::fit::monte_carlo::{self, Repeat};
+use ulna::identify::identifiability::Known;
 
 /// Indices of the parameters that are not held.
 fn free(problem: &Problem, hold: &PyReadonlyArray1<'_, bool>) -> PyResult<Vec<usize>> {

@@ -6,14 +6,14 @@ use crate::errors::UlnaError;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use ulna::calibrate::{self, SearchReason};
-use ulna::residuals::Unweighted;
+use ulna::artefacts::Unweighted;
+use ulna::fit::calibrate::{self, SearchReason};
 
 /// What readings can and cannot determine.
 #[pyclass(frozen, module = "ulna._core")]
 #[derive(Clone)]
 pub struct Identifiability {
-    pub inner: ulna::identifiability::Identifiability,
+    pub inner: ulna::identify::identifiability::Identifiability,
 }
 
 fn weights<'py>(py: Python<'py>, combination: &[(String, f64)]) -> PyResult<Bound<'py, PyDict>> {
@@ -53,7 +53,7 @@ impl Identifiability {
 
     #[getter]
     fn lost<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let one = |lost: &ulna::identifiability::LostDirection| {
+        let one = |lost: &ulna::identify::identifiability::LostDirection| {
             let dict = PyDict::new(py);
             dict.set_item("combination", weights(py, &lost.combination)?)?;
             dict.set_item("cause", lost.because.cause.as_str())?;
@@ -67,7 +67,7 @@ impl Identifiability {
 
     #[getter]
     fn weak<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let one = |weak: &ulna::identifiability::WeakDirection| {
+        let one = |weak: &ulna::identify::identifiability::WeakDirection| {
             let dict = PyDict::new(py);
             dict.set_item("combination", weights(py, &weak.combination)?)?;
             dict.set_item("u", weak.u)?;

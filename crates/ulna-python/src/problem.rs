@@ -6,14 +6,14 @@ use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
+use ulna::artefacts::length::LengthRows;
+use ulna::artefacts::points::{Features, Frame, Uncertainty};
+use ulna::artefacts::surface::Side;
+use ulna::artefacts::{Noise, TouchRows};
 use ulna::kinematics::Angles;
-use ulna::losses::Loss;
-use ulna::priors::Prior;
 use ulna::problem::BallArtefact;
-use ulna::residuals::length::LengthRows;
-use ulna::residuals::points::{Features, Frame, Uncertainty};
-use ulna::residuals::surface::Side;
-use ulna::residuals::{Noise, TouchRows};
+use ulna::problem::priors::Prior;
+use ulna::solver::losses::Loss;
 
 /// Readings of features of placed artefacts, to be explained by one arm.
 #[pyclass(module = "ulna._core")]
@@ -150,7 +150,8 @@ impl Problem {
             },
         };
         let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, (warmth_k.as_ref(), approach.as_ref()), &probe, Some(&feature), &placement)?;
+        let touched =
+            Touched::new(n, &q_rad, (warmth_k.as_ref(), approach.as_ref()), &probe, Some(&feature), &placement)?;
         self.inner.add_points(&features, touched.rows()).map_err(raise)
     }
 

@@ -12,14 +12,14 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 use ulna::arm::Unit;
-use ulna::assembly::Assembly;
-use ulna::calibrate::{Options, Start, fit, solve};
+use ulna::artefacts::length::LengthRows;
+use ulna::artefacts::{Noise, Weighing};
+use ulna::fit::calibrate::{Options, Start, fit, solve};
+use ulna::fit::monte_carlo::{Repeat, recalibrate};
 use ulna::kinematics::{Angles, Chain, Poses, batch};
 use ulna::monitor::Unwatched;
-use ulna::monte_carlo::{Repeat, recalibrate};
 use ulna::problem::Problem;
-use ulna::residuals::length::LengthRows;
-use ulna::residuals::{Noise, Weighing};
+use ulna::problem::assembly::Assembly;
 use ulna::simd::{Columns, simd_level};
 use ulna::solver::LeastSquares;
 
@@ -50,7 +50,8 @@ fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> 
     let distance = |k: usize| (0..3).map(|j| (from[3 * k + j] - to[3 * k + j]).powi(2)).sum::<f64>().sqrt();
     let length_mm: Vec<f64> = (0..count).map(distance).collect();
     let mut problem = Problem::new(start, noise).expect("a valid problem");
-    let rows = LengthRows { from: Angles::cold(&q), to: Angles::cold(&p), probe: &vec![0; count], length_mm: &length_mm };
+    let rows =
+        LengthRows { from: Angles::cold(&q), to: Angles::cold(&p), probe: &vec![0; count], length_mm: &length_mm };
     problem.add_lengths("bar", rows, 0.0, false).expect("valid rows");
     problem
 }

@@ -11,14 +11,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use shared::{Dropped, TABLE_2, arm, best};
 use std::f64::consts::PI;
 use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics};
-use ulna::assembly::Assembly;
-use ulna::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{Angles, tip_mm};
+use ulna::artefacts::points::{Features, Frame, Uncertainty};
+use ulna::artefacts::surface::Side;
+use ulna::artefacts::{TouchRows, Weighing};
+use ulna::kinematics::inverse::{Limits, posture_for_point};
+use ulna::kinematics::{Angles, Conditions, tip_mm};
 use ulna::monitor::Unwatched;
+use ulna::problem::assembly::Assembly;
 use ulna::problem::{BallArtefact, Problem};
-use ulna::residuals::points::{Features, Frame, Uncertainty};
-use ulna::residuals::surface::Side;
-use ulna::residuals::{TouchRows, Weighing};
 use ulna::solver::LeastSquares;
 
 const TIP_MM: [f64; 3] = [10.0, 0.0, 200.0];
@@ -87,7 +87,7 @@ fn touch(truth: &Arm, standing: Standing, rng: &mut Xoshiro256PlusPlus) -> Touch
             .iter()
             .map(|(at, _)| {
                 let point = origin + nalgebra::Vector3::from(*at);
-                posture_for_point(truth, 0, point, &limits, 10, rng)
+                posture_for_point(truth, 0, (point, Conditions::default()), &limits, 10, rng)
             })
             .collect();
         let Some(poses) = poses else { continue };

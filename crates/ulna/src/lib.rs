@@ -4,33 +4,26 @@
 //!
 //! | room | what is in it | may use |
 //! |---|---|---|
-//! | [`arm`] | joints, probes, parameter names, units and order | |
 //! | [`simd`] | columns and vectors of doubles, a sine and cosine | |
-//! | [`kinematics`] | the map from encoder angles to the tip and its derivatives, plain and in batches | `arm`, `simd` |
-//! | [`residuals`] | what is observed: one file for each kind of residual | `kinematics` |
-//! | [`problem`], [`assembly`] | an arm and readings, and the free parameters as unknowns | `residuals`, `solver` |
-//! | [`solver`] | least squares from streamed rows; knows no kinematics | `simd` |
-//! | [`decomposition`], [`covariance`] | singular values and what follows from them; know no kinematics | `solver` |
-//! | [`design`] | which measurements to take, chosen by exchange; knows no kinematics | `monitor` |
-//! | [`identifiability`], [`causes`] | what is lost, in parameters and words | `decomposition` |
-//! | [`pins`], [`families`] | directions no reading sees, kept at their start | `assembly`, `decomposition` |
-//! | [`symmetry`] | twins: parameter sets that describe the same readings | `arm` |
-//! | [`losses`], `robust` | how much outliers count; know no kinematics | |
-//! | [`priors`] | what is known before | |
-//! | [`solve`], `search`, `signs`, `settle` | the way to the minimum | `assembly`, `solver` |
-//! | [`calibrate`] | the fit and all that is judged of it | everything above |
-//! | [`monte_carlo`] | calibrations repeated on new noise | `calibrate` |
-//! | [`propagate`], [`inverse`], [`numdiff`] | uncertainty of a point; postures for a point; a derivative checker | `kinematics` |
+//! | [`arm`] | joints, probes, effects, parameter names, units and order | |
+//! | [`solver`] | least squares from streamed rows, singular values, losses; knows no kinematics | `simd` |
+//! | [`design`] | which measurements to take, chosen by exchange; knows no kinematics | |
+//! | [`kinematics`] | from encoder angles to the tip, its derivatives, and back; plain and in batches | `arm`, `simd` |
+//! | [`artefacts`] | what is observed: readings of artefacts as residuals | `kinematics`, `solver` |
+//! | [`problem`] | an arm and readings, what is known before, the free parameters as unknowns | `artefacts` |
+//! | [`identify`] | what readings cannot determine, in parameters and words | `problem` |
+//! | [`fit`] | the way to the minimum, and all that is judged of it | `identify` |
+//!
+//! Every room may use the rooms above it in this table, and [`error`] and [`monitor`]; none uses one below.
 //!
 //! ```
 //! use ulna::arm::{Arm, Joint, JointModel, Probe};
-//! use ulna::calibrate::{Options, fit};
-//! use ulna::kinematics::tip_mm;
+//! use ulna::artefacts::TouchRows;
+//! use ulna::artefacts::points::{Features, Frame, Uncertainty};
+//! use ulna::fit::calibrate::{Options, fit};
+//! use ulna::kinematics::{Angles, tip_mm};
 //! use ulna::monitor::Unwatched;
-//! use ulna::kinematics::Angles;
 //! use ulna::problem::Problem;
-//! use ulna::residuals::TouchRows;
-//! use ulna::residuals::points::{Features, Frame, Uncertainty};
 //!
 //! // two joints and a probe, with a link length that is not quite known
 //! let joint = |a_mm, alpha_rad| Joint {
@@ -59,35 +52,17 @@
 //! ```
 
 pub mod arm;
-pub mod assembly;
-pub mod calibrate;
-pub mod causes;
-pub mod covariance;
-pub mod decomposition;
+pub mod artefacts;
 pub mod design;
 pub mod error;
-pub mod families;
-pub mod identifiability;
-pub mod inverse;
+pub mod fit;
+pub mod identify;
 pub mod kinematics;
-pub mod losses;
 pub mod monitor;
-pub mod monte_carlo;
-pub mod numdiff;
-pub mod pins;
-pub mod priors;
 pub mod problem;
-pub mod propagate;
-pub mod residuals;
-pub mod robust;
-mod search;
-mod seeds;
-
-mod settle;
-mod signs;
 pub mod simd;
-pub mod solve;
 pub mod solver;
-pub mod symmetry;
+
+mod seeds;
 
 pub use error::{Error, Result};

@@ -6,10 +6,10 @@ use common::{Told, angles, any_arm, any_effects, any_full_arm, rng};
 use proptest::prelude::*;
 use rand::RngExt;
 use ulna::arm::Arm;
+use ulna::kinematics::propagate::check_jacobian;
 use ulna::kinematics::{Chain, Poses, batch, encoder_jacobian, jacobian, tip_mm};
-use ulna::numdiff::worst_difference;
-use ulna::propagate::check_jacobian;
 use ulna::simd::Columns;
+use ulna::solver::numdiff::worst_difference;
 
 /// Any arm: bare or full last link, with or without effects beyond its geometry; and what is true at its poses.
 fn any(seed: u64, encoders: usize, rows: usize) -> (Arm, Vec<f64>, Told) {

@@ -4,15 +4,15 @@ mod common;
 
 use common::{KINDS, any_arm, any_effects, any_full_arm, noises, rng};
 use ulna::arm::Arm;
-use ulna::assembly::Assembly;
-use ulna::families::pins;
+use ulna::artefacts::Weighing;
+use ulna::identify::families::pins;
 use ulna::monitor::Unwatched;
-use ulna::numdiff::worst_difference;
-use ulna::pins::Kind;
 use ulna::problem::Problem;
-use ulna::residuals::Weighing;
+use ulna::problem::assembly::Assembly;
+use ulna::problem::pins::Kind;
 use ulna::solver::LeastSquares;
 use ulna::solver::gram::{Cost, Gram};
+use ulna::solver::numdiff::worst_difference;
 use ulna::solver::triangle::Triangle;
 
 /// The arms that every kind must be right for: plain, with all effects, and with a full last link.
@@ -136,11 +136,11 @@ fn a_part_of_the_readings_has_the_whole_ones_rank() {
 #[test]
 fn what_is_redrawn_without_noise_is_met_exactly() {
     for_all(|label, problem, free| {
-        let model = ulna::residuals::Model::new(problem.arm());
-        let silent = ulna::residuals::Noise::default();
+        let model = ulna::artefacts::Model::new(problem.arm());
+        let silent = ulna::artefacts::Noise::default();
         for group in problem.groups() {
             let dimensions_mm: Vec<f64> = group.dimensions().iter().map(|d| d.value_mm).collect();
-            let at = ulna::residuals::At { model: &model, dimensions_mm: &dimensions_mm };
+            let at = ulna::artefacts::At { model: &model, dimensions_mm: &dimensions_mm };
             let exact = group.redrawn(at, &silent, &mut rng(3));
             // its dimensions were calibrated anew: what it is has not changed
             let exact = exact.unweighted(at);

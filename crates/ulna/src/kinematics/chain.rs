@@ -1,6 +1,6 @@
 //! An arm's geometry, and what it does beyond it, as the kernels use them.
 
-use super::batch::compliance::Carried;
+use super::carried::Carried;
 use crate::arm::effects::{Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Effects, JointModel};
 use std::ops::Range;

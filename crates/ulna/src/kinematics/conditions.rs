@@ -1,6 +1,6 @@
 //! What was true at poses beside the angles of the encoders, as far as an arm's effects ask for it.
 
-use crate::arm::Seen;
+use crate::arm::effects::Seen;
 use crate::error::{Error, Result};
 use crate::simd::{Columns, Lanes};
 use pulp::Simd;

@@ -1,6 +1,7 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
-use super::Pose;
+use super::pose::Pose;
+use crate::arm::effects::{Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -127,26 +128,28 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     for k in 0..3 {
         jacobian.set_column(arm.tip_offset(probe) + k, &(r_base_tip.matrix().column(k) * posed.stretches[n - 1]));
     }
+    let effects = arm.effects();
     let mut at = arm.geometry_count();
-    let mut next = |column: Vector3<f64>| {
-        jacobian.set_column(at, &column);
-        at += 1;
-    };
-    for effect in arm.effects().on_encoder() {
+    for effect in effects.on_encoder() {
         for (i, sign) in arm.signs().enumerate() {
-            effect.shapes(posed.pose.encoder(i)).into_iter().for_each(|shape| next(posed.by_turn(i) * sign * shape));
+            for shape in effect.shapes(posed.pose.encoder(i)) {
+                jacobian.set_column(at, &(posed.by_turn(i) * sign * shape));
+                at += 1;
+            }
         }
     }
-    for i in 0..arm.effects().expansion.as_ref().map_or(0, |e| e.per_kelvin.len()) {
+    let first = arm.geometry_count() + effects.start_of(Expansion::KIND);
+    for i in 0..effects.expansion.as_ref().map_or(0, |e| e.per_kelvin.len()) {
         let link = arm.joints().get(i).map_or(Vector3::zeros(), |joint| {
             let turn = posed.turns_rad[i];
             posed.frames[i] * Vector3::new(joint.a_mm * turn.cos(), joint.a_mm * turn.sin(), joint.d_mm)
         });
         let tip = if i + 1 == n { posed.frames[n] * posed.tip_mm / posed.stretches[i] } else { Vector3::zeros() };
-        next((link + tip) * posed.pose.warmth_k(i));
+        jacobian.set_column(first + i, &((link + tip) * posed.pose.warmth_k(i)));
     }
+    let first = arm.geometry_count() + effects.start_of(Compliance::KIND);
     if let Some(weight) = &posed.weight {
-        (0..n).for_each(|i| next(posed.by_turn(i) * weight.moment_nm(i)));
+        (0..n).for_each(|i| jacobian.set_column(first + i, &(posed.by_turn(i) * weight.moment_nm(i))));
     }
     jacobian
 }

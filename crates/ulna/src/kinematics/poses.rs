@@ -1,9 +1,9 @@
 //! Encoder angles of many poses, in columns, and what was true at them.
 
-use super::Sample;
 use super::chain::Link;
 use super::conditions::{Conditions, Held};
-use crate::arm::{EncoderLanes, Seen};
+use super::pose::{Pose, Sample};
+use crate::arm::effects::{EncoderLanes, Seen};
 use crate::simd::{Columns, Lanes};
 use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
@@ -35,10 +35,10 @@ impl<'a> Angles<'a> {
     }
 
     /// One pose.
-    pub fn pose(self, row: usize, encoders: usize) -> super::Pose<'a> {
+    pub fn pose(self, row: usize, encoders: usize) -> Pose<'a> {
         let q_rad = &self.q_rad[row * encoders..(row + 1) * encoders];
         let conditions = self.conditions.part(row..row + 1, self.q_rad.len() / encoders);
-        super::Pose { q_rad, conditions }
+        Pose { q_rad, conditions }
     }
 }
 

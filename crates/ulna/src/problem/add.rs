@@ -1,13 +1,13 @@
 //! Readings on their way into a problem: what cannot be used is refused, with its name and value.
 
-use super::{MOST_MM, Problem};
+use super::groups::{MOST_MM, Problem};
+use crate::artefacts::Dimension;
+use crate::artefacts::length::{LengthRows, Lengths};
+use crate::artefacts::points::{Features, Points, Uncertainty};
+use crate::artefacts::surface::{Plane, Side, Sphere, Surface};
+use crate::artefacts::{Readings, TouchRows};
 use crate::error::{Error, Result};
 use crate::kinematics::Angles;
-use crate::residuals::Dimension;
-use crate::residuals::length::{LengthRows, Lengths};
-use crate::residuals::points::{Features, Points, Uncertainty};
-use crate::residuals::surface::{Plane, Side, Sphere, Surface};
-use crate::residuals::{Readings, TouchRows};
 
 /// A ball or a hollow, as a study states it.
 #[derive(Debug, Clone, Copy)]

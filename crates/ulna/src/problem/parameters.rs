@@ -1,10 +1,10 @@
 //! A problem's parameters: the arm's, then the fitted dimensions of its artefacts; and what is known of them before.
 
-use super::{LEAST_NOISE, MOST_MM, Problem};
+use super::groups::{LEAST_NOISE, MOST_MM, Problem};
+use super::priors::Prior;
 use crate::arm::{Arm, JointModel, Unit};
+use crate::artefacts::Dimension;
 use crate::error::{Error, Result};
-use crate::priors::Prior;
-use crate::residuals::Dimension;
 
 impl Problem {
     /// Number of parameters: the arm's, and the fitted dimensions.

@@ -3,7 +3,7 @@
 //! They square the condition number. That is known and accepted where they are used: for steps on the way to the
 //! minimum, whose gradient stays exact, never for rank or covariance.
 
-use super::{RowBlock, RowSink, vanished};
+use super::equations::{RowBlock, RowSink, vanished};
 use crate::simd::Lanes;
 use pulp::{Arch, Simd, WithSimd};
 

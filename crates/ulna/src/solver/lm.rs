@@ -1,7 +1,7 @@
 //! Levenberg (1944) and Marquardt (1963), on columns scaled to unit norm, with the damping of Nielsen (1999).
 
+use super::equations::{LeastSquares, vanished};
 use super::gram::{Gram, cholesky};
-use super::{LeastSquares, vanished};
 use crate::error::Result;
 use crate::monitor::{Monitor, Stage};
 

@@ -34,7 +34,7 @@ impl WithSimd for ReflectOp<'_> {
         let ReflectOp { top, pivots, columns, order, rows } = self;
         let width = order.len();
         let vectors = rows.len() / S::F64_LANES;
-        let mut pivot_column = [0.0; super::BLOCK_ROWS];
+        let mut pivot_column = [0.0; super::equations::BLOCK_ROWS];
         for k in 0..pivots {
             let pivot = &mut pivot_column[..rows.len()];
             pivot.copy_from_slice(&columns.column(order[k])[rows.clone()]);

@@ -1,7 +1,7 @@
 //! The triangular factor of all rows, by Householder reflections block after block.
 
+use super::equations::{BLOCK_ROWS, RowBlock, RowSink};
 use super::reflect::fold_into;
-use super::{BLOCK_ROWS, RowBlock, RowSink};
 use crate::simd::Columns;
 use faer::Mat;
 

@@ -4,12 +4,12 @@
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::artefacts::length::LengthRows;
+use ulna::artefacts::points::{Features, Frame, Uncertainty};
+use ulna::artefacts::surface::Side;
+use ulna::artefacts::{Noise, TouchRows};
 use ulna::kinematics::{Angles, Conditions, tip_mm};
 use ulna::problem::{BallArtefact, Problem};
-use ulna::residuals::length::LengthRows;
-use ulna::residuals::points::{Features, Frame, Uncertainty};
-use ulna::residuals::surface::Side;
-use ulna::residuals::{Noise, TouchRows};
 
 pub fn rng(seed: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(seed)

@@ -1,7 +1,10 @@
 //! Play between a joint and its encoder: it depends on the side from which a pose was approached where the arm stops.
 
-use super::{Effect, Encoder, EncoderLanes, FromStated, Lost, OnEncoder, Stated, Unseen};
-use crate::arm::Unit;
+use super::effect::{Effect, FromStated};
+use super::on_encoder::{Encoder, EncoderLanes, OnEncoder};
+use super::seen::{Lost, Unseen};
+use super::stated::Stated;
+use crate::arm::unit::Unit;
 use crate::error::Result;
 use crate::simd::Lanes;
 use pulp::Simd;
@@ -50,12 +53,14 @@ impl Effect for Backlash {
             // nothing but the first joint turns all that a standing is measured with
             return (lost.alone && lost.joints == [0] && shown(&0)).then(|| Unseen {
                 cause: "approach-one-sided",
-                because: "joint 1 was approached from one side alone wherever the artefact stood: what its backlash does \
+                because:
+                    "joint 1 was approached from one side alone wherever the artefact stood: what its backlash does \
                           looks like the artefact turned about the first axis"
-                    .into(),
-                remedy: "take readings with joint 1 approached from both sides while the artefact stands still (at the \
+                        .into(),
+                remedy:
+                    "take readings with joint 1 approached from both sides while the artefact stands still (at the \
                          two ends of a length), or hold joint.1.backlash"
-                    .into(),
+                        .into(),
             });
         };
         let name = joint + 1;

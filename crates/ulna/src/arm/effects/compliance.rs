@@ -1,7 +1,9 @@
 //! Joints that give way to the weight of what they carry.
 
-use super::{Effect, FromStated, Lost, Stated, Unseen};
-use crate::arm::Unit;
+use super::effect::{Effect, FromStated};
+use super::seen::{Lost, Unseen};
+use super::stated::Stated;
+use crate::arm::unit::Unit;
 use crate::error::{Error, Result};
 
 /// `κ_i M_i` added to each turn, with `M_i` the gravity moment about axis i of all that moves with joint i.

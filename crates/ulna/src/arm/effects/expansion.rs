@@ -1,7 +1,9 @@
 //! Links that grow with temperature.
 
-use super::{Effect, FromStated, Lost, Stated, Unseen};
-use crate::arm::Unit;
+use super::effect::{Effect, FromStated};
+use super::seen::{Lost, Unseen};
+use super::stated::Stated;
+use crate::arm::unit::Unit;
 use crate::error::Result;
 
 /// `a_i`, `d_i` and, of the last joint, the tip, scaled by `1 + ε_i (T_i - 20 °C)`.

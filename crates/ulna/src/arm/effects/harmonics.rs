@@ -1,7 +1,9 @@
 //! Eccentric encoders: an error that repeats with the encoder's turn.
 
-use super::{Effect, Encoder, EncoderLanes, FromStated, OnEncoder, Stated};
-use crate::arm::Unit;
+use super::effect::{Effect, FromStated};
+use super::on_encoder::{Encoder, EncoderLanes, OnEncoder};
+use super::stated::Stated;
+use crate::arm::unit::Unit;
 use crate::error::{Error, Result};
 use crate::simd::Lanes;
 use pulp::Simd;

@@ -5,37 +5,14 @@
 //! parameter by the gradient of `Σ w_i M_i`: the derivative of `pull · S` along the turns w, differentiated once more, by
 //! carrying S together with its tangent out and their adjoints back.
 
-use crate::arm::Compliance;
-use crate::kinematics::Poses;
+use crate::kinematics::carried::Carried;
 use crate::kinematics::chain::Chain;
+use crate::kinematics::poses::Poses;
 use crate::simd::Lanes;
 use pulp::Simd;
 
-/// What an arm carries, as the kernels use it.
-#[derive(Debug, Clone)]
-pub(in crate::kinematics) struct Carried {
-    /// mass times centre of the body that moves with each joint, kg mm
-    first_moments: Vec<[f64; 3]>,
-    /// mass of all that moves with each joint, kg
-    masses: Vec<f64>,
-    /// gravity, N m for each kg mm
-    pull: [f64; 3],
-}
-
-impl Carried {
-    pub(in crate::kinematics) fn new(compliance: &Compliance) -> Carried {
-        let bodies = &compliance.bodies;
-        let beyond = |i: usize| bodies[i..].iter().map(|body| body.mass_kg).sum();
-        Carried {
-            first_moments: bodies.iter().map(|body| body.centre_mm.map(|c| c * body.mass_kg)).collect(),
-            masses: (0..bodies.len()).map(beyond).collect(),
-            pull: compliance.pull(),
-        }
-    }
-}
-
 /// Vectors remembered for each joint.
-pub(in crate::kinematics) const SLOTS: usize = 17;
+pub(super) const SLOTS: usize = 17;
 /// Sine and cosine of the turn; S before the turn (x, y), before the shift (z) and before beta (x, z).
 const SIN: usize = 0;
 const COS: usize = 1;
@@ -55,14 +32,7 @@ fn load<S: Simd>(simd: S, region: &[f64], i: usize, slot: usize) -> Lanes<S> {
 
 /// Carries all weight of vector `k` of poses to the base and the pull back out: leaves the moments in the region.
 #[inline(always)]
-pub(in crate::kinematics) fn prepare<S: Simd>(
-    simd: S,
-    chain: &Chain,
-    carried: &Carried,
-    poses: &Poses,
-    k: usize,
-    region: &mut [f64],
-) {
+pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses: &Poses, k: usize, region: &mut [f64]) {
     let c = |value: f64| Lanes::splat(simd, value);
     let [mut x, mut y, mut z] = [c(0.0); 3];
     for (i, link) in chain.links.iter().enumerate().rev() {
@@ -121,19 +91,19 @@ pub(in crate::kinematics) fn prepare<S: Simd>(
 
 /// Gravity's moment about axis `i`, N m.
 #[inline(always)]
-pub(in crate::kinematics) fn moment<S: Simd>(simd: S, region: &[f64], i: usize) -> Lanes<S> {
+pub(super) fn moment<S: Simd>(simd: S, region: &[f64], i: usize) -> Lanes<S> {
     load(simd, region, i, MOMENT)
 }
 
 /// Remembers how far the tip follows the moment about axis `i`.
 #[inline(always)]
-pub(in crate::kinematics) fn weigh<S: Simd>(region: &mut [f64], i: usize, weight: Lanes<S>) {
+pub(super) fn weigh<S: Simd>(region: &mut [f64], i: usize, weight: Lanes<S>) {
     weight.store(region, i * SLOTS + WEIGHT);
 }
 
 /// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn, alpha, a and d or beta.
 #[inline(always)]
-pub(in crate::kinematics) fn derivatives<S: Simd>(
+pub(super) fn derivatives<S: Simd>(
     simd: S,
     chain: &Chain,
     carried: &Carried,

@@ -6,9 +6,8 @@
 //! direction or three, so the 3 × parameters Jacobian of a pose is never formed.
 
 use super::compliance;
-use crate::kinematics::Poses;
 use crate::kinematics::chain::{Chain, Link};
-use crate::kinematics::poses::EncoderOf;
+use crate::kinematics::poses::{EncoderOf, Poses};
 use crate::simd::{Lanes, PAD};
 use pulp::{NullaryFnOnce, Simd};
 

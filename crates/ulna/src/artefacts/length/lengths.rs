@@ -1,0 +1,296 @@
+//! Lengths of many rows.
+
+use super::kernels::{LengthOp, VarianceOp};
+use super::run::Run;
+use crate::arm::Seen;
+use crate::artefacts::dimension::{Dimension, Unknowns};
+use crate::artefacts::model::At;
+use crate::artefacts::noise::{Noise, Weighing, normal};
+use crate::artefacts::readings::Readings;
+use crate::artefacts::residuals::{Unweighted, Whitened};
+use crate::artefacts::writer::Writer;
+use crate::error::Result;
+use crate::kinematics::batch::scratch_len;
+use crate::kinematics::{Angles, Poses, Sample};
+use crate::simd::Columns;
+use crate::solver::BLOCK_ROWS;
+use pulp::Arch;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Rows of two poses and a length, in runs of one probe each.
+#[derive(Debug, Clone)]
+pub struct Lengths {
+    runs: Vec<Run>,
+    /// the length, where it is not known exactly: what is added to that of every row
+    dimensions: Vec<Dimension>,
+    rows: usize,
+}
+
+/// What one row of a file says.
+#[derive(Debug, Clone, Copy)]
+pub struct LengthRows<'a> {
+    /// The first poses.
+    pub from: Angles<'a>,
+    /// The second poses.
+    pub to: Angles<'a>,
+    /// Which probe took each row.
+    pub probe: &'a [usize],
+    /// Calibrated distance of each row, mm.
+    pub length_mm: &'a [f64],
+}
+
+impl Lengths {
+    /// Rows of an arm of `encoders` joints. `u_mm` is the standard uncertainty of the length, common to all rows; `fitted`:
+    /// it is an unknown of the fit within that.
+    pub fn new(name: &str, encoders: usize, data: LengthRows, u_mm: f64, fitted: bool) -> Lengths {
+        Lengths::between(name, data.probe, data.length_mm, (u_mm, fitted), |rows| {
+            [data.from, data.to].map(|poses| Poses::gathered(poses, encoders, rows))
+        })
+    }
+
+    /// Rows by the probe and the length of each; `ends` gives both poses of some of the rows.
+    pub(in crate::artefacts) fn between(
+        name: &str,
+        probe_of: &[usize],
+        length_mm: &[f64],
+        (u_mm, fitted): (f64, bool),
+        ends: impl Fn(&[usize]) -> [Poses; 2],
+    ) -> Lengths {
+        let probes = probe_of.iter().max().map_or(0, |&p| p + 1);
+        let mut runs = Vec::new();
+        for probe in 0..probes {
+            let rows: Vec<usize> = (0..probe_of.len()).filter(|&r| probe_of[r] == probe).collect();
+            if rows.is_empty() {
+                continue;
+            }
+            let [from, to] = ends(&rows);
+            runs.push(Run {
+                probe,
+                from,
+                to,
+                length_mm: Columns::gathered(length_mm, 1, &rows),
+                weight: ones(rows.len()),
+                discounted: None,
+                rows,
+            });
+        }
+        let first_mm = length_mm.first().copied().unwrap_or(0.0);
+        let length = Dimension { name: format!("artefact.{name}.length"), value_mm: first_mm, u_mm, fitted };
+        Lengths { runs, dimensions: if u_mm > 0.0 { vec![length] } else { vec![] }, rows: probe_of.len() }
+    }
+}
+
+/// Weight one for each row, zero for the padding.
+fn ones(rows: usize) -> Columns {
+    Columns::from_rows(&vec![1.0; rows], 1)
+}
+
+impl Readings for Lengths {
+    fn len(&self) -> usize {
+        self.rows
+    }
+
+    fn equations(&self) -> usize {
+        self.rows
+    }
+
+    fn placement_unknowns(&self) -> usize {
+        0
+    }
+
+    fn scale_free(&self) -> bool {
+        false
+    }
+
+    fn mirror_free(&self) -> bool {
+        true
+    }
+
+    fn probes_used(&self, probes: usize) -> Vec<bool> {
+        (0..probes).map(|p| self.runs.iter().any(|run| run.probe == p)).collect()
+    }
+
+    fn dimensions(&self) -> &[Dimension] {
+        &self.dimensions
+    }
+
+    fn sin_cos_bytes(&self) -> usize {
+        let encoders = self.runs.first().map_or(0, |run| run.from.encoders());
+        self.rows * encoders * 2 * 2 * size_of::<f64>()
+    }
+
+    fn keep_sin_cos(&mut self) {
+        for run in &mut self.runs {
+            run.from.keep_sin_cos();
+            run.to.keep_sin_cos();
+        }
+    }
+
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, _: Weighing) {
+        let model = at.model;
+        let mut scratch = [vec![0.0; scratch_len(&model.chain)], vec![0.0; scratch_len(&model.chain)]];
+        for run in &mut self.runs {
+            let mut weight = ones(run.rows.len());
+            if let Some(noise) = noise {
+                let mut variance = Columns::zeros(1, run.rows.len());
+                Arch::new().dispatch(VarianceOp {
+                    chain: &model.chain,
+                    tip: model.tips_mm[run.probe],
+                    run,
+                    noise,
+                    variance: variance.column_mut(0),
+                    scratch: &mut scratch,
+                });
+                for (w, v) in weight.column_mut(0).iter_mut().zip(variance.column(0)) {
+                    *w = if *w > 0.0 && *v > 0.0 { v.sqrt().recip() } else { *w };
+                }
+            }
+            run.weight = weight;
+            run.discounted = None;
+        }
+    }
+
+    fn discount(&mut self, factors: Option<&[f64]>) {
+        for run in &mut self.runs {
+            run.discounted = factors.map(|factors| {
+                let mut weight = run.weight.clone();
+                weight.column_mut(0).iter_mut().zip(&run.rows).for_each(|(w, &row)| *w *= factors[row]);
+                weight
+            });
+        }
+    }
+
+    fn weight_squared_sum(&self) -> f64 {
+        let run_sum = |run: &Run| run.weights().column(0).iter().map(|w| w * w).sum::<f64>();
+        self.runs.iter().map(run_sum).sum()
+    }
+
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
+        let model = at.model;
+        let probes = model.tips_mm.len();
+        let parameters = model.chain.parameter_columns();
+        let residual = parameters + self.dimensions.len();
+        for run in &self.runs {
+            let unknown = |column: usize| match model.chain.parameter_of(column, run.probe, probes) {
+                Some(parameter) => unknowns.parameters[parameter],
+                None => unknowns.dimensions[column - parameters],
+            };
+            let targets = (0..residual).filter_map(|c| Some((c, unknown(c)?)));
+            out.layout(residual, targets.filter(|_| jacobian))?;
+            let rows = run.length_mm.column(0).len();
+            for start in (0..rows).step_by(BLOCK_ROWS) {
+                out.block.rows = BLOCK_ROWS.min(rows - start);
+                Arch::new().dispatch(LengthOp {
+                    chain: &model.chain,
+                    tip: model.tips_mm[run.probe],
+                    run,
+                    start,
+                    added_mm: self.added_mm(at),
+                    jacobian,
+                    dimension: !self.dimensions.is_empty(),
+                    out,
+                });
+                out.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn unweighted(&self, at: At) -> Unweighted {
+        let mut residuals_mm = vec![0.0; self.rows];
+        let mut weights = vec![0.0; self.rows];
+        for run in &self.runs {
+            let distance = run.distances(at.model);
+            for (k, &row) in run.rows.iter().enumerate() {
+                residuals_mm[row] = distance[k] - run.length_mm.column(0)[k] - self.added_mm(at);
+                weights[row] = run.weights().column(0)[k];
+            }
+        }
+        Unweighted { components: 1, residuals_mm, weights }
+    }
+
+    fn whitened(&self, at: At) -> Whitened {
+        let mut norms = self.unweighted(at).residuals_mm;
+        for run in &self.runs {
+            for (&row, weight) in run.rows.iter().zip(run.weight.column(0)) {
+                norms[row] = (norms[row] * weight).abs();
+            }
+        }
+        Whitened { norms, freedoms: vec![1.0; self.rows] }
+    }
+
+    fn samples(&self, most: usize) -> Vec<Sample> {
+        let step = (2 * self.rows).div_ceil(most.max(1)).max(1);
+        let run_poses = |run: &Run| {
+            let poses = (0..run.rows.len()).step_by(step);
+            poses.flat_map(|k| [run.from.sample(k, run.probe), run.to.sample(k, run.probe)]).collect::<Vec<_>>()
+        };
+        self.runs.iter().flat_map(run_poses).collect()
+    }
+
+    fn seen(&self) -> Seen {
+        self.runs.iter().flat_map(|run| [run.from.seen(), run.to.seen()]).reduce(Seen::and).unwrap_or_default()
+    }
+
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        let mut drawn = self.clone();
+        // the length is what it is; its calibration is drawn anew
+        let artefact_error = self.dimensions.first().map_or(0.0, |c| c.u_mm * normal(rng));
+        if let (Some(dimension), Some(&length)) = (drawn.dimensions.first_mut(), truth.dimensions_mm.first()) {
+            dimension.value_mm = length + artefact_error;
+        }
+        for run in &mut drawn.runs {
+            let from = run.tips(truth.model, &run.from);
+            let to = run.tips(truth.model, &run.to);
+            for k in 0..run.rows.len() {
+                let distance = (0..3)
+                    .map(|j| {
+                        let seats = noise.seat_mm * (normal(rng) - normal(rng));
+                        (from.column(j)[k] - to.column(j)[k] + seats).powi(2)
+                    })
+                    .sum::<f64>()
+                    .sqrt();
+                run.length_mm.column_mut(0)[k] = distance + artefact_error;
+            }
+            run.from.add_noise(&noise.encoder_rad, rng);
+            run.to.add_noise(&noise.encoder_rad, rng);
+        }
+        Box::new(drawn)
+    }
+
+    fn thinned(&self, most: usize) -> Box<dyn Readings> {
+        let keep = most.min(self.rows);
+        let mut runs = Vec::new();
+        for run in &self.runs {
+            let count = (keep * run.rows.len()).div_ceil(self.rows.max(1)).min(run.rows.len());
+            let picked: Vec<usize> = (0..count).map(|i| i * run.rows.len() / count).collect();
+            runs.push(Run {
+                probe: run.probe,
+                rows: (0..picked.len()).collect(),
+                from: run.from.picked(&picked),
+                to: run.to.picked(&picked),
+                length_mm: run.length_mm.picked(&picked),
+                weight: run.weight.picked(&picked),
+                discounted: run.discounted.as_ref().map(|weight| weight.picked(&picked)),
+            });
+        }
+        let mut next = 0;
+        for run in &mut runs {
+            run.rows = (next..next + run.rows.len()).collect();
+            next += run.rows.len();
+        }
+        Box::new(Lengths { runs, dimensions: self.dimensions.clone(), rows: next })
+    }
+
+    fn boxed(&self) -> Box<dyn Readings> {
+        Box::new(self.clone())
+    }
+}
+
+impl Lengths {
+    /// What the length's dimension adds to the length of every row.
+    fn added_mm(&self, at: At) -> f64 {
+        let dimension = self.dimensions.first().zip(at.dimensions_mm.first());
+        dimension.map_or(0.0, |(dimension, value)| value - dimension.value_mm)
+    }
+}

@@ -1,0 +1,11 @@
+//! `length`: two poses and the distance between their tips.
+//!
+//! ```text
+//! r = w (‖p(q) - p(q')‖ - L)      ∂r = w u · (∂p(q) - ∂p(q'))      u = (p(q) - p(q')) / ‖p(q) - p(q')‖
+//! ```
+
+mod kernels;
+mod lengths;
+mod run;
+
+pub use lengths::{LengthRows, Lengths};

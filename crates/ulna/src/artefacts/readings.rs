@@ -1,0 +1,100 @@
+//! What every kind of readings can do.
+
+use super::dimension::{Dimension, Unknowns};
+use super::model::At;
+use super::noise::{Noise, Weighing};
+use super::residuals::{Unweighted, Whitened};
+use super::writer::Writer;
+use crate::arm::Seen;
+use crate::error::Result;
+use crate::kinematics::Sample;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::fmt::Debug;
+
+/// Readings of one artefact.
+pub trait Readings: Debug + Send + Sync {
+    /// Number of rows in the file.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Scalar equations.
+    fn equations(&self) -> usize;
+
+    /// Unknowns of all placements.
+    fn placement_unknowns(&self) -> usize;
+
+    /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.
+    fn scale_free(&self) -> bool;
+
+    /// How fast each dimension grows with the arm where no length is known, mm.
+    fn growing(&self, at: At) -> Vec<f64> {
+        vec![0.0; at.dimensions_mm.len()]
+    }
+
+    /// Whether the mirror image of the arm explains them as well.
+    fn mirror_free(&self) -> bool;
+
+    /// For each probe, whether it took any of them.
+    fn probes_used(&self, probes: usize) -> Vec<bool>;
+
+    /// Dimensions that are not known exactly.
+    fn dimensions(&self) -> &[Dimension];
+
+    /// Bytes that keeping the sines and cosines would take.
+    fn sin_cos_bytes(&self) -> usize;
+
+    /// Keeps sines and cosines of all readings for the fits to come.
+    fn keep_sin_cos(&mut self);
+
+    /// Weighs every reading for the noise, at these parameters; without noise every reading weighs one.
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, how: Weighing);
+
+    /// Weighs each reading, in the order they were given, by a further factor: what a loss makes of it. None: by one.
+    fn discount(&mut self, factors: Option<&[f64]>);
+
+    /// Sum of the squared weights of all readings, 1/mm².
+    fn weight_squared_sum(&self) -> f64;
+
+    /// Streams the equations.
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()>;
+
+    /// Residuals as a person reads them.
+    fn unweighted(&self, at: At) -> Unweighted;
+
+    /// Residuals as a loss judges them.
+    fn whitened(&self, at: At) -> Whitened;
+
+    /// Poses of the readings, at most about `most` of them.
+    fn samples(&self, most: usize) -> Vec<Sample>;
+
+    /// What they show of what the arm's effects depend on.
+    fn seen(&self) -> Seen;
+
+    /// The same readings, exact at these parameters, with new noise, and dimensions calibrated anew.
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;
+
+    /// About `most` of these readings, evenly chosen, for a quick look.
+    fn thinned(&self, most: usize) -> Box<dyn Readings>;
+
+    /// The same knowledge, or nearly, as lengths between pairs of touches, where it can be told so: nothing has to be placed
+    /// then, and a search finds its way more often.
+    fn as_lengths(&self) -> Option<Box<dyn Readings>> {
+        None
+    }
+
+    /// The same knowledge told by lengths alone, where that is all there is: of an artefact of two features, touched once
+    /// each wherever it stands, five of six coordinates say where that is. Same dimensions; weights are to be found anew.
+    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
+        None
+    }
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn Readings>;
+}

@@ -1,0 +1,104 @@
+//! What the equations of all placed artefacts share: derivatives out of a tile, and the elimination of a standing.
+
+use super::dimension::Unknowns;
+use super::model::Model;
+use super::tile::Tile;
+use crate::solver::RowBlock;
+use crate::solver::reflect::fold_into;
+use std::ops::Range;
+
+/// Columns of a block of touches: the arm's parameters, the artefact's dimensions, the residual, the standing's unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    /// Where the dimensions begin.
+    pub dimensions: usize,
+    /// The residual.
+    pub residual: usize,
+}
+
+impl Layout {
+    pub fn new(model: &Model, dimensions: usize) -> Layout {
+        let parameters = model.chain.parameter_columns() + 3 * (model.tips_mm.len() - 1);
+        Layout { dimensions: parameters, residual: parameters + dimensions }
+    }
+
+    /// Which columns are of which unknown.
+    pub fn targets(self, unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
+        let unknown = move |column: usize| match column {
+            c if c < self.dimensions => unknowns.parameters[c],
+            c => unknowns.dimensions[c - self.dimensions],
+        };
+        (0..self.residual).filter_map(move |c| Some((c, unknown(c)?)))
+    }
+}
+
+/// Some readings of one standing within a tile, and where their equations go: component after component.
+pub(super) struct Place<'a> {
+    pub tile: &'a Tile,
+    /// the readings, counted in the tile
+    pub in_tile: Range<usize>,
+    /// their probes
+    pub probe: &'a [usize],
+    /// equations of each reading
+    pub components: usize,
+    /// rows of the block
+    pub used: Range<usize>,
+}
+
+impl Place<'_> {
+    /// Writes the derivatives with respect to the arm's parameters; clears the other targets' columns.
+    pub fn write_parameters(&self, block: &mut RowBlock, model: &Model, layout: Layout) {
+        let m = self.in_tile.len();
+        let joints = model.chain.joint_parameter_count();
+        let probes = model.tips_mm.len();
+        for &(column, _) in &block.targets {
+            let target = &mut block.columns.column_mut(column)[self.used.clone()];
+            target.fill(0.0);
+            let own_column = match column {
+                c if c < joints => c,
+                c if c < joints + 3 * probes => {
+                    let (probe, axis) = ((c - joints) / 3, (c - joints) % 3);
+                    for (i, _) in self.probe.iter().enumerate().filter(|(_, p)| **p == probe) {
+                        for component in 0..self.components {
+                            target[component * m + i] =
+                                self.tile.values(component, joints + axis)[self.in_tile.start + i];
+                        }
+                    }
+                    continue;
+                }
+                c if c < layout.dimensions => c - 3 * (probes - 1),
+                _ => continue,
+            };
+            for component in 0..self.components {
+                let values = &self.tile.values(component, own_column)[self.in_tile.clone()];
+                target[component * m..(component + 1) * m].copy_from_slice(values);
+            }
+        }
+    }
+}
+
+/// What of the standing being streamed has been folded away so far.
+#[derive(Default)]
+pub(super) struct Eliminated {
+    top: Vec<f64>,
+    order: Vec<usize>,
+    pivots: usize,
+}
+
+impl Eliminated {
+    /// Begins a standing of so many unknowns, whose columns stand behind the residual.
+    pub fn begin(&mut self, unknowns: usize, block: &RowBlock) {
+        self.pivots = unknowns;
+        self.order.clear();
+        self.order.extend(block.residual + 1..block.residual + 1 + unknowns);
+        self.order.extend(block.targets.iter().map(|&(column, _)| column));
+        self.order.push(block.residual);
+        self.top.clear();
+        self.top.resize(unknowns * self.order.len(), 0.0);
+    }
+
+    /// Takes what the standing's unknowns explain out of some rows.
+    pub fn fold(&mut self, block: &mut RowBlock, used: Range<usize>) {
+        fold_into(&mut self.top, self.pivots, &mut block.columns, &self.order, used);
+    }
+}

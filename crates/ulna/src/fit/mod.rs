@@ -1,0 +1,11 @@
+//! The way to the minimum, and all that is judged of it.
+
+pub mod calibrate;
+pub mod monte_carlo;
+pub mod robust;
+pub mod solve;
+pub mod symmetry;
+
+mod search;
+mod settle;
+mod signs;

@@ -1,0 +1,127 @@
+//! Which readings are far off, in units of the scatter of their own kind, and what a loss makes of them.
+//!
+//! A reading's placement follows it, and so does the arm, so that its residual is smaller than its error: lengths are
+//! judged against the degrees of freedom that the reading has left. The scatter of each group is taken from the median of its lengths,
+//! which half of them could not move (Hampel 1974).
+
+use crate::artefacts::Whitened;
+use crate::solver::losses::{Loss, median_length, rare_length};
+
+/// How readings stand, group by group, in the order they were given.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Standing {
+    /// Scatter of each group, in units of its stated noise (mm where none is stated).
+    pub scales: Vec<f64>,
+    /// Length of each reading's residual, in units of the scatter; 0 where it has no freedom.
+    pub lengths: Vec<Vec<f64>>,
+    /// Dimensions of each residual, 1 to 3.
+    pub dimensions: Vec<Vec<f64>>,
+}
+
+/// Degrees of freedom below which a residual shows nothing.
+const NO_FREEDOM: f64 = 1e-6;
+/// A fit of nearly as many parameters as equations leaves residuals that say nothing of the errors.
+const LEAST_LEFT: f64 = 1e-3;
+
+impl Standing {
+    /// Of the whitened residuals of a fit with so many degrees of freedom. Scatter below `least` is none: rounding.
+    pub fn of(whitened: &[Whitened], degrees_of_freedom: f64, least: f64) -> Standing {
+        Standing::with_scales(whitened, degrees_of_freedom, |lengths| median(lengths).max(least))
+    }
+
+    /// The same, the scatter of each group being known.
+    pub fn again(&self, whitened: &[Whitened], degrees_of_freedom: f64) -> Standing {
+        let mut scales = self.scales.iter();
+        Standing::with_scales(whitened, degrees_of_freedom, |_| scales.next().copied().unwrap_or(1.0))
+    }
+
+    fn with_scales(
+        whitened: &[Whitened],
+        degrees_of_freedom: f64,
+        mut scale: impl FnMut(&mut Vec<f64>) -> f64,
+    ) -> Standing {
+        let mut standing = Standing::default();
+        let all: f64 = whitened.iter().flat_map(|group| &group.freedoms).sum();
+        // what the fitted parameters take is taken from all readings alike
+        let left = if all > 0.0 { (degrees_of_freedom / all).clamp(LEAST_LEFT, 1.0) } else { 1.0 };
+        for group in whitened {
+            let dimensions: Vec<f64> = group.freedoms.iter().map(|freedom| freedom.clamp(1.0, 3.0)).collect();
+            let each = group.norms.iter().zip(&group.freedoms).zip(&dimensions);
+            let length = |((norm, freedom), dimension): ((&f64, &f64), &f64)| {
+                if *freedom > NO_FREEDOM { norm * (dimension / (freedom * left)).sqrt() } else { 0.0 }
+            };
+            let mut lengths: Vec<f64> = each.map(length).collect();
+            let free = group.freedoms.iter().zip(&lengths).zip(&dimensions);
+            let free = free.filter(|((freedom, _), _)| **freedom > NO_FREEDOM);
+            let mut of_median: Vec<f64> = free.map(|((_, length), d)| length / median_length(*d)).collect();
+            let scale = scale(&mut of_median);
+            lengths.iter_mut().for_each(|length| *length /= scale);
+            standing.scales.push(scale);
+            standing.lengths.push(lengths);
+            standing.dimensions.push(dimensions);
+        }
+        standing
+    }
+
+    fn each(&self, of: impl Fn(f64, f64) -> f64) -> Vec<Vec<f64>> {
+        let group = |(lengths, dimensions): (&Vec<f64>, &Vec<f64>)| {
+            lengths.iter().zip(dimensions).map(|(&t, &d)| of(t, d)).collect()
+        };
+        self.lengths.iter().zip(&self.dimensions).map(group).collect()
+    }
+
+    /// What a loss lets each reading count, 0 to 1.
+    pub fn weights(&self, loss: Loss) -> Vec<Vec<f64>> {
+        self.each(|t, d| loss.weight(t, loss.tuning(d)))
+    }
+
+    /// Which readings of a group are farther off than one normal residual in ten thousand.
+    pub fn outliers_of(&self, group: usize) -> impl Iterator<Item = bool> {
+        self.lengths[group].iter().zip(&self.dimensions[group]).map(|(&t, &d)| t > rare_length(d))
+    }
+
+    /// The variance of a whitened residual that gives a robust fit its covariance: `K² E[ψ²] / E[ψ']²`, with
+    /// `K = 1 + p/n var(ψ') / E[ψ']²` for the share p/n that the fitted parameters have (Huber 1981, section 7.6).
+    pub fn variance(&self, whitened: &[Whitened], loss: Loss, degrees_of_freedom: f64) -> f64 {
+        let (mut squares, mut slopes, mut slopes_squared, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for ((group, lengths), dimensions) in whitened.iter().zip(&self.lengths).zip(&self.dimensions) {
+            for (((norm, freedom), &t), &d) in group.norms.iter().zip(&group.freedoms).zip(lengths).zip(dimensions) {
+                let tuning = loss.tuning(d);
+                let slope = loss.weight(t, tuning) + loss.slope(t, tuning) / d;
+                squares += (loss.weight(t, tuning) * norm).powi(2);
+                slopes += freedom * slope;
+                slopes_squared += freedom * slope * slope;
+                count += freedom;
+            }
+        }
+        let slope = slopes / count;
+        let spread = slopes_squared / count / (slope * slope) - 1.0;
+        let fitted = (1.0 - degrees_of_freedom / count).max(0.0);
+        squares / degrees_of_freedom * ((1.0 + fitted * spread) / slope).powi(2)
+    }
+
+    /// Scatter over all groups, by their degrees of freedom.
+    pub fn pooled_scale(&self, whitened: &[Whitened]) -> f64 {
+        let freedoms = whitened.iter().map(|group| group.freedoms.iter().sum::<f64>());
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (scale, freedom) in self.scales.iter().zip(freedoms) {
+            sum += freedom * scale * scale;
+            count += freedom;
+        }
+        if count > 0.0 { (sum / count).sqrt() } else { 1.0 }
+    }
+}
+
+/// The middle one; 0 of none.
+fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    let upper = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
+    if !values.len().is_multiple_of(2) {
+        return upper;
+    }
+    let lower = values[..middle].iter().copied().fold(f64::MIN, f64::max);
+    0.5 * (lower + upper)
+}

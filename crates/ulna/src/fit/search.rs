@@ -1,0 +1,218 @@
+//! Starts tried one after the other until the minimum that explains the readings is found.
+//!
+//! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
+//! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
+
+use crate::arm::Unit;
+use crate::error::{Error, Result};
+use crate::kinematics::encoder_jacobian;
+use crate::monitor::{Monitor, Stage};
+use crate::problem::Problem;
+use crate::problem::assembly::Assembly;
+use crate::problem::pins::{Kind, Pin};
+use crate::solver::LeastSquares;
+use crate::solver::lm::{Options, minimize};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use std::f64::consts::PI;
+
+/// What a search found.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Searched {
+    /// Best free parameters.
+    pub x: Vec<f64>,
+    /// Their cost on the thinned readings.
+    pub cost: f64,
+    /// How many starts were tried.
+    pub starts: usize,
+    /// Signs of the encoders there.
+    pub signs: Vec<f64>,
+}
+
+/// How far zero offsets are thrown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Throw {
+    /// Anywhere: nothing is known of them.
+    Anywhere,
+    /// Nearby first, then farther: the given start ended in a poor minimum.
+    Widening,
+}
+
+impl Throw {
+    /// How far at an attempt, rad.
+    pub fn width(self, attempt: usize) -> f64 {
+        match self {
+            Throw::Anywhere => PI,
+            Throw::Widening => [0.3, 0.6, 1.0, 1.5, 2.2, PI][attempt.min(59) / 10],
+        }
+    }
+}
+
+/// How to search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    pub throw: Throw,
+    pub most_starts: usize,
+    pub seed: u64,
+}
+
+/// Readings used for a start, and iterations after which a start is given up.
+const READINGS: usize = 200;
+const ITERATIONS: usize = 60;
+/// Starts that must agree on the best cost before it is believed, where the cost is not low enough by itself; and where
+/// it is so high that a calibrated arm would not leave it.
+const AGREEING: usize = 4;
+const AGREEING_POOR: usize = 40;
+/// Costs that differ by less than this part belong to the same minimum: starts are given up before the last digits.
+const SAME_MINIMUM: f64 = 1e-4;
+
+/// A minimum that leaves so small a part of what the next best of several leaves is the arm: no accident comes so near.
+const FAR_BETTER: f64 = 1e-4;
+const SEVERAL: usize = 10;
+
+pub(crate) fn search(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    given: &[f64],
+    plan: Plan,
+    monitor: &dyn Monitor,
+) -> Result<Searched> {
+    let thin = problem.for_search(READINGS);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
+    let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
+    if !sizeless {
+        return search_over(thin, free, pins, given, plan, monitor, |thin, attempt, x| {
+            throw(thin, free, plan.throw.width(attempt), x, &mut rng);
+        });
+    }
+    // with no length known, most starts end in arms that shrink to a point: the links keep theirs while zero offsets are sought
+    let units = problem.arm().parameter_units();
+    let joints = problem.arm().joint_parameter_count();
+    let sought = |k: &usize| units[free[*k]] == Unit::Rad || free[*k] >= joints;
+    let part: Vec<usize> = (0..free.len()).filter(sought).collect();
+    let part_free: Vec<usize> = part.iter().map(|&k| free[k]).collect();
+    let part_given: Vec<f64> = part.iter().map(|&k| given[k]).collect();
+    let found = search_over(thin, &part_free, &[], &part_given, plan, monitor, |thin, attempt, x| {
+        throw(thin, &part_free, plan.throw.width(attempt), x, &mut rng);
+    })?;
+    let mut x = given.to_vec();
+    for (&k, value) in part.iter().zip(found.x) {
+        x[k] = value;
+    }
+    Ok(Searched { x, ..found })
+}
+
+/// Zero offsets thrown by up to `width`, rad.
+pub(crate) fn throw(thin: &Problem, free: &[usize], width: f64, x: &mut [f64], rng: &mut Xoshiro256PlusPlus) {
+    for (value, &j) in x.iter_mut().zip(free) {
+        if is_zero_offset(thin, j) {
+            *value += rng.random_range(-width..width);
+        }
+    }
+}
+
+/// The search over some parameters of thinned readings. `throw` makes a start of the given one, and may change the arm's
+/// signs.
+pub(crate) fn search_over(
+    mut thin: Problem,
+    free: &[usize],
+    pins: &[Pin],
+    given: &[f64],
+    plan: Plan,
+    monitor: &dyn Monitor,
+    mut throw: impl FnMut(&mut Problem, usize, &mut [f64]),
+) -> Result<Searched> {
+    let options = Options { max_iterations: ITERATIONS, ..Options::default() };
+    let quiet = Quiet(monitor);
+    let descend = |thin: &Problem, x: &mut [f64]| -> Result<(f64, f64)> {
+        let mut assembly = Assembly::new(thin, free, pins, monitor);
+        let cost = minimize(&mut assembly, x, &options, &quiet)?.cost;
+        Ok((cost, assembly.negligible_cost()))
+    };
+    let mut x = given.to_vec();
+    let (cost, negligible) = descend(&thin, &mut x)?;
+    let mut best = Searched { x, cost, starts: 1, signs: thin.arm().signs().collect() };
+    let (mut agreeing, mut runner_up) = (1, f64::MAX);
+    let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
+    let start = thin.parameters();
+    for attempt in 0..plan.most_starts {
+        if !monitor.progress(Stage::Search, attempt, plan.most_starts) {
+            return Err(Error::Interrupted);
+        }
+        let mut x = given.to_vec();
+        throw(&mut thin, attempt, &mut x);
+        let (cost, _) = descend(&thin, &mut x)?;
+        best.starts += 1;
+        let tie = SAME_MINIMUM * best.cost + negligible;
+        if cost <= best.cost + tie {
+            agreeing = if cost < best.cost - tie { 1 } else { agreeing + 1 };
+        }
+        if (cost - best.cost).abs() > tie {
+            runner_up = runner_up.min(cost.max(best.cost));
+        }
+        if cost < best.cost {
+            best = Searched { x, cost, signs: thin.arm().signs().collect(), ..best };
+        }
+        // the noise as stated, or rounding, explains it; or several starts found the same
+        let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
+        let enough = if poor(&thin, &start, best.cost) { AGREEING_POOR } else { AGREEING };
+        let far_better = best.starts >= SEVERAL && best.cost < FAR_BETTER * runner_up;
+        if explained || best.cost <= negligible || agreeing >= enough || far_better {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// Whether the joints of an arm hardly move its tip any more, compared with the problem's own arm: readings of seats that
+/// know no length are met exactly by a tip that nothing moves.
+pub(crate) fn collapsed(problem: &Problem, parameters: &[f64]) -> bool {
+    mobility(problem, parameters) < COLLAPSED * mobility(problem, &problem.parameters())
+}
+
+/// An arm whose joints move its tip by less than this part of what they did before has collapsed.
+const COLLAPSED: f64 = 0.3;
+
+/// How far the tip moves with its joints, mm/rad, root mean square over some of the readings.
+fn mobility(problem: &Problem, parameters: &[f64]) -> f64 {
+    let Ok(arm) = problem.arm_at(parameters) else {
+        return 0.0;
+    };
+    let poses = problem.samples(40);
+    let moved = poses.iter().map(|pose| encoder_jacobian(&arm, pose.probe, pose.pose()).norm_squared());
+    (moved.sum::<f64>() / poses.len().max(1) as f64).sqrt()
+}
+
+/// Whether a parameter is the zero offset of a joint: what a search throws.
+pub(crate) fn is_zero_offset(problem: &Problem, parameter: usize) -> bool {
+    parameter < problem.arm().joint_parameter_count() && parameter.is_multiple_of(4)
+}
+
+/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves; nor are residuals a hundred times
+/// the stated noise.
+const POOR: f64 = 1e-3;
+const POOR_NOISE: f64 = 100.0;
+
+/// Whether a cost is beyond what any calibrated arm leaves. The reach is the shorter of that at the start and that at
+/// these parameters: either may be absurd.
+pub(crate) fn poor(problem: &Problem, parameters: &[f64], cost: f64) -> bool {
+    let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
+    let reach = problem.reach_at_mm(parameters).min(problem.reach_mm());
+    let dof = problem.equations().saturating_sub(problem.placement_unknowns()).max(1);
+    let beyond_noise = problem.noise().is_some() && cost > POOR_NOISE.powi(2) * dof as f64;
+    beyond_noise || (cost / weights).sqrt() > POOR * reach
+}
+
+/// Lets a fit be interrupted without reporting each of its steps.
+struct Quiet<'a>(&'a dyn Monitor);
+
+impl Monitor for Quiet<'_> {
+    fn progress(&self, _: Stage, _: usize, _: usize) -> bool {
+        true
+    }
+
+    fn keep_going(&self) -> bool {
+        self.0.keep_going()
+    }
+}

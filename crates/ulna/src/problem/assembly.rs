@@ -1,0 +1,184 @@
+//! The free parameters of a problem as unknowns of a least-squares problem that the solver can read.
+
+use super::groups::Problem;
+use super::pins::Pin;
+use super::priors::Prior;
+use crate::artefacts::{At, Buffers, Model, Unknowns, Writer};
+use crate::error::Result;
+use crate::monitor::Monitor;
+use crate::simd::{Columns, PAD, padded};
+use crate::solver::{BLOCK_ROWS, LeastSquares, RowBlock, RowSink};
+
+/// The free parameters of a problem as unknowns of a least-squares problem.
+pub struct Assembly<'a> {
+    problem: &'a Problem,
+    monitor: &'a dyn Monitor,
+    /// indices of the free parameters
+    free: Vec<usize>,
+    parameters: Vec<f64>,
+    model: Model,
+    unknowns: Vec<Unknowns>,
+    considered: usize,
+    priors: Vec<Prior>,
+    natural_scale: Vec<f64>,
+    negligible_cost: f64,
+    pins: Vec<Pin>,
+    buffers: Buffers,
+}
+
+impl<'a> Assembly<'a> {
+    /// With the free parameters given by index. The readings must have been weighed.
+    pub fn new(problem: &'a Problem, free: &[usize], pins: &[Pin], monitor: &'a dyn Monitor) -> Assembly<'a> {
+        let natural = problem.natural_scale();
+        let mut of_parameter = vec![None; problem.parameter_count()];
+        for (unknown, &parameter) in free.iter().enumerate() {
+            of_parameter[parameter] = Some(unknown);
+        }
+        let priors = problem.priors();
+        let priors = priors.into_iter().filter(|prior| of_parameter[prior.parameter].is_some()).collect();
+        let mut of_readings = of_parameter.clone();
+        // turning or lifting the base changes no distance: with residuals left these columns would not vanish by themselves
+        for parameter in problem.base_parameters() {
+            of_readings[parameter] = None;
+        }
+        let (of_arm, _) = of_readings.split_at(problem.arm().parameter_count());
+        let mut considered = 0;
+        let mut unknown = |slot: &Option<usize>| {
+            let fitted = slot.and_then(|parameter| of_parameter[parameter]);
+            considered += usize::from(fitted.is_none());
+            Some(fitted.unwrap_or(free.len() + considered.saturating_sub(1)))
+        };
+        let mut group_unknowns = |slots: &Vec<Option<usize>>| Unknowns {
+            parameters: of_arm.to_vec(),
+            dimensions: slots.iter().map(&mut unknown).collect(),
+        };
+        let unknowns = problem.slots().iter().map(&mut group_unknowns).collect();
+        let weight_squared: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
+        let rounding = 32.0 * f64::EPSILON * problem.reach_mm();
+        Assembly {
+            problem,
+            monitor,
+            natural_scale: free.iter().map(|&j| natural[j]).collect(),
+            pins: pins.to_vec(),
+            free: free.to_vec(),
+            model: Model::new(problem.arm()),
+            parameters: problem.parameters(),
+            unknowns,
+            considered,
+            priors,
+            negligible_cost: weight_squared * rounding * rounding,
+            buffers: Buffers::default(),
+        }
+    }
+
+    /// The equations of readings and priors at `x`, the considered dimensions as further unknowns behind the free ones.
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    pub fn considered_rows(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
+        self.stream(x, true, true, sink)?;
+        self.stream_priors(x, true, x.len() + self.considered, sink);
+        Ok(())
+    }
+
+    /// Number of considered dimensions: known with an uncertainty, and not fitted.
+    pub fn considered(&self) -> usize {
+        self.considered
+    }
+
+    fn stream(&mut self, x: &[f64], jacobian: bool, considered: bool, sink: &mut dyn RowSink) -> Result<()> {
+        for (&j, &value) in self.free.iter().zip(x) {
+            self.parameters[j] = value;
+        }
+        self.model.set_parameters(&self.parameters[..self.problem.arm().parameter_count()]);
+        let dimensions = self.problem.dimensions_at(&self.parameters);
+        // parameters of the arm, dimensions of a group, residual, standing
+        let most_dimensions = dimensions.iter().map(Vec::len).max().unwrap_or(0);
+        let columns = self.problem.arm().parameter_count() + most_dimensions + 1 + 6;
+        let mut out = Writer::new(&mut self.buffers, columns, &self.model, sink, self.monitor);
+        let mut streamed = Ok(());
+        for ((group, unknowns), dimensions_mm) in self.problem.groups().iter().zip(&mut self.unknowns).zip(&dimensions)
+        {
+            let at = At { model: &self.model, dimensions_mm };
+            // without the considered ones, whose numbers are behind the unknowns
+            let kept = (!considered).then(|| unknowns.dimensions.clone());
+            if !considered {
+                let fitted = |unknown: &mut Option<usize>| *unknown = unknown.filter(|&u| u < self.free.len());
+                unknowns.dimensions.iter_mut().for_each(fitted);
+            }
+            streamed = group.stream(at, unknowns, jacobian, &mut out);
+            if let Some(kept) = kept {
+                unknowns.dimensions = kept;
+            }
+            if streamed.is_err() {
+                break;
+            }
+        }
+        let finished = out.finish(&mut self.buffers);
+        streamed.and(finished)
+    }
+
+    /// `unit (x - value) / u` of each prior, for a sink of so many unknowns.
+    fn stream_priors(&self, x: &[f64], jacobian: bool, unknowns: usize, sink: &mut dyn RowSink) {
+        for priors in self.priors.chunks(BLOCK_ROWS) {
+            let mut block = RowBlock {
+                columns: Columns::zeros(unknowns + 1, priors.len()),
+                rows: padded(priors.len()),
+                targets: (0..unknowns).map(|c| (c, c)).collect(),
+                residual: unknowns,
+            };
+            for (row, prior) in priors.iter().enumerate() {
+                let Some(unknown) = self.free.iter().position(|&j| j == prior.parameter) else { continue };
+                let weight = self.problem.unit() / prior.u;
+                block.columns.column_mut(unknown)[row] = weight;
+                block.columns.column_mut(unknowns)[row] = weight * (x[unknown] - prior.value);
+            }
+            if !jacobian {
+                block.targets.clear();
+            }
+            sink.fold(&mut block);
+        }
+    }
+}
+
+impl LeastSquares for Assembly<'_> {
+    fn unknowns(&self) -> usize {
+        self.free.len()
+    }
+
+    fn natural_scale(&self) -> &[f64] {
+        &self.natural_scale
+    }
+
+    fn negligible_cost(&self) -> f64 {
+        self.negligible_cost
+    }
+
+    fn rows(&mut self, x: &[f64], jacobian: bool, sink: &mut dyn RowSink) -> Result<()> {
+        self.stream(x, jacobian, false, sink)?;
+        self.stream_priors(x, jacobian, x.len(), sink);
+        for pin in &self.pins {
+            let residual = pin.residual(x);
+            let mut block = single_row(pin.coefficients.iter().chain([&residual]), x.len() + 1);
+            if !jacobian {
+                block.targets.clear();
+            }
+            sink.fold(&mut block);
+        }
+        Ok(())
+    }
+}
+
+/// A block of one equation, its last column the residual.
+fn single_row<'a>(values: impl Iterator<Item = &'a f64>, columns: usize) -> RowBlock {
+    let mut block = RowBlock {
+        columns: Columns::zeros(columns, 1),
+        rows: PAD,
+        targets: (0..columns - 1).map(|c| (c, c)).collect(),
+        residual: columns - 1,
+    };
+    for (column, &value) in values.enumerate() {
+        block.columns.column_mut(column)[0] = value;
+    }
+    block
+}
