@@ -38,20 +38,12 @@ pub struct Known {
     pub angle_rad: f64,
 }
 
-/// What is known of any engineering material: none expands by more than this, 1/K.
-const EXPANSION_PER_K: f64 = 3e-5;
-/// A joint that gives way by more than this for a newton metre is broken, rad.
-const COMPLIANCE_RAD_PER_NM: f64 = 1e-3;
-
 impl Known {
-    /// How well a parameter of this unit is known.
-    pub(crate) fn of(self, unit: Unit) -> f64 {
-        match unit {
-            Unit::Rad => self.angle_rad,
-            Unit::Mm => self.length_mm,
-            Unit::PerKelvin => EXPANSION_PER_K,
-            Unit::RadPerNewtonMetre => COMPLIANCE_RAD_PER_NM,
-        }
+    /// Standard uncertainty of so many parameters before any reading: those of an arm, and lengths behind them.
+    pub(crate) fn of(self, arm: &Arm, parameters: usize) -> Vec<f64> {
+        let mut known = arm.known(self.length_mm, self.angle_rad);
+        known.resize(parameters, self.length_mm);
+        known
     }
 }
 
@@ -102,7 +94,8 @@ pub(crate) struct Question<'a> {
     pub pins: &'a [Pin],
     /// the same directions at the arm in question
     pub symmetries: &'a [Symmetry],
-    pub known: Known,
+    /// of each parameter: standard uncertainty before any reading, where it has no prior
+    pub known: &'a [f64],
     /// standard deviation of a whitened residual
     pub sigma: f64,
 }
@@ -169,7 +162,7 @@ fn left_open(directions: &[Vec<f64>], decomposition: &Decomposition, question: &
     let count = question.scene.free.len();
     let known = |j: usize| match question.priors[j] {
         Some((_, u)) => u,
-        None => question.known.of(question.units[question.scene.free[j]]),
+        None => question.known[question.scene.free[j]],
     };
     let covariance = if directions.is_empty() { vec![] } else { decomposition.covariance() };
     let mut open = vec![false; count];
@@ -274,7 +267,7 @@ fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) ->
     // what has a prior is never known worse than that
     let known = |j: usize| match question.priors[j] {
         Some(_) => f64::INFINITY,
-        None => question.known.of(units[question.scene.free[j]]),
+        None => question.known[question.scene.free[j]],
     };
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {
