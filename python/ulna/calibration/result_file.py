@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from ulna.arm.effects.effects import Extra
 from ulna.arm.joint_file import JointTable
 from ulna.arm.tables import CartesianTip
 
@@ -157,7 +158,7 @@ class OutlierEntry(Open):
 class ExtraEntry(Open):
     """A block beyond geometry, judged by readings left out."""
 
-    extra: Literal["encoder-harmonics", "link-expansion", "compliance"]
+    extra: Extra
     figure: str
     """Which figure, mean over the groups left out."""
     without_mm: float

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from ulna.arm.arm import Arm
 from ulna.arm.directions import combination, sentence
+from ulna.arm.effects.effects import EFFECTS
 from ulna.calibration.identify import Identification
 from ulna.cli.printed.tables import heading, listed
 from ulna.ground.digits import uncertainty
@@ -23,8 +24,7 @@ _CAUSES = {
     "joint-still": "a joint that does not move",
     "parallel-axes": "parallel axes",
     "redundant-link": "a link that says what the tip says",
-    "temperature-still": "a temperature that does not change",
-    "no-moment": "gravity along an axis",
+    **{cause: words for effect in EFFECTS.values() for cause, words in effect.causes.items()},
     "coverage": "the choice of poses",
 }
 
