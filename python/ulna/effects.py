@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,22 +86,23 @@ def extra_of(parameter: str) -> Extra | None:
     return next(own, None)
 
 
-def for_core(joints: Sequence[Effects], gravity: Sequence[float]) -> dict[str, Any]:
-    """The arguments of `_core.Arm.with_effects`: a joint without what others have counts as having zero of it."""
+def for_core(joints: Sequence[Effects], gravity: Sequence[float]) -> list[tuple[str, dict[str, F64]]]:
+    """What `_core.Arm.with_effects` takes: a joint without what others have counts as having zero of it."""
     extras, orders = extras_of(joints), orders_of(joints)
-    given: dict[str, Any] = {}
+    given: list[tuple[str, dict[str, F64]]] = []
     if orders:
-        given["harmonic_orders"] = orders
-        given["harmonics_rad"] = np.array(
-            [[own.harmonics_rad.get(order, (0.0, 0.0)) for order in orders] for own in joints]
-        )
+        amplitudes_rad = np.array([[own.harmonics_rad.get(order, (0.0, 0.0)) for order in orders] for own in joints])
+        given.append(("encoder-harmonics", {"orders": np.array(orders, float), "amplitudes_rad": amplitudes_rad}))
     if "link-expansion" in extras:
-        given["expansion_per_k"] = np.array([own.expansion_per_k or 0.0 for own in joints])
+        given.append(("link-expansion", {"expansion_per_k": np.array([own.expansion_per_k or 0.0 for own in joints])}))
     if "compliance" in extras:
-        given["compliance_rad_per_nm"] = np.array([own.compliance_rad_per_nm or 0.0 for own in joints])
-        given["masses_kg"] = np.array([own.mass_kg for own in joints])
-        given["centres_mm"] = np.array([own.centre_mm for own in joints], dtype=np.float64)
-        given["gravity"] = [float(g) for g in gravity]
+        compliance = {
+            "compliance_rad_per_nm": np.array([own.compliance_rad_per_nm or 0.0 for own in joints]),
+            "masses_kg": np.array([own.mass_kg for own in joints]),
+            "centres_mm": np.array([own.centre_mm for own in joints], dtype=np.float64),
+            "gravity": np.array(gravity, dtype=np.float64),
+        }
+        given.append(("compliance", compliance))
     return given
 
 

@@ -175,7 +175,7 @@ class Arm:
                 np.array([probe.tip_mm for probe in self.probes.values()]).reshape(-1, 3),
                 self.full_last_link,
             )
-            return arm.with_effects(**effects.for_core(self._effects, self.gravity))
+            return arm.with_effects(effects.for_core(self._effects, self.gravity))
         except _core.UlnaError as error:
             raise UlnaInputError(f"arm '{self.name}': {error}") from None
 

@@ -23,6 +23,8 @@ _CAUSES = {
     "joint-still": "a joint that does not move",
     "parallel-axes": "parallel axes",
     "redundant-link": "a link that says what the tip says",
+    "approach-unknown": "an approach that nobody stated",
+    "approach-one-sided": "an approach from one side alone",
     "temperature-still": "a temperature that does not change",
     "no-moment": "gravity along an axis",
     "coverage": "the choice of poses",
