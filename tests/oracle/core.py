@@ -12,11 +12,20 @@ from .fits import Groups, Noise
 from .observed import Lengths, Points
 from .surfaces import Plane, Sphere
 
+COMPLIANCE = ("compliance_rad_per_nm", "masses_kg", "centres_mm", "gravity")
+
 
 def core_arm(arm: Chain | Affected, names: Sequence[str] | None = None) -> _core.Arm:
     """The same arm in the core; probes are called bent, p1, p2, … unless named."""
     if isinstance(arm, Affected):
-        return core_arm(arm.chain, names).with_effects(stated(arm))
+        effects = [
+            ("encoder-harmonics", {"orders": arm.orders, "amplitudes_rad": arm.harmonics_rad}),
+            ("backlash", {"backlash_rad": arm.backlash_rad}),
+            ("link-expansion", {"expansion_per_k": arm.expansion_per_k}),
+            ("compliance", {name: getattr(arm, name) for name in COMPLIANCE}),
+        ]
+        given = [(kind, arrays) for kind, arrays in effects if all(array is not None for array in arrays.values())]
+        return core_arm(arm.chain, names).with_effects(given)
     names = names or ["bent", *(f"p{k}" for k in range(1, arm.probes))]
     hayati = np.array([*arm.hayati, False])
     links = np.zeros((4, arm.joints))
@@ -26,52 +35,40 @@ def core_arm(arm: Chain | Affected, names: Sequence[str] | None = None) -> _core
     return _core.Arm(theta0, alpha, a, d, beta, np.array(arm.sign, float), hayati, list(names), np.array(arm.tips_mm))
 
 
-def stated(arm: Affected) -> list[tuple[str, dict[str, np.ndarray]]]:
-    """The effects as the core takes them."""
-    found: list[tuple[str, dict]] = []
-    if arm.harmonics_rad is not None:
-        found.append(("encoder-harmonics", {"orders": arm.orders, "amplitudes_rad": arm.harmonics_rad}))
-    if arm.expansion_per_k is not None:
-        found.append(("link-expansion", {"expansion_per_k": arm.expansion_per_k}))
-    if arm.compliance_rad_per_nm is not None:
-        names = ("compliance_rad_per_nm", "masses_kg", "centres_mm", "gravity")
-        found.append(("compliance", {name: getattr(arm, name) for name in names}))
-    if arm.backlash_rad is not None:
-        found.append(("backlash", {"backlash_rad": arm.backlash_rad}))
-    return found
-
-
 def core_problem(arm: Chain | Affected, groups: Groups, noise: Noise | None = None) -> _core.Problem:
     problem = _core.Problem(core_arm(arm), *((noise.encoder_rad, noise.seat_mm) if noise else (None, None)))
     for number, group in enumerate(groups):
         probe = np.broadcast_to(np.asarray(group.probe, np.int64), (len(group.q_rad),)).copy()
-        q_rad, at = split(arm, group.q_rad)
+        q_rad, *told = split(arm, group.q_rad)
+        conditions = dict(zip(("warmth_k", "approach"), told, strict=True))
         if isinstance(group, Lengths):
-            p_rad, second = split(arm, group.p_rad)
-            if "approach" in second:
-                at = {**at, "p_approach": second["approach"]}
-            index = problem.add_lengths(f"lengths {number}", q_rad, p_rad, probe, group.length_mm, **at)
+            p_rad, _, p_approach = split(arm, group.p_rad)
+            index = problem.add_lengths(
+                f"lengths {number}", q_rad, p_rad, probe, group.length_mm, **conditions, p_approach=p_approach
+            )
         elif isinstance(group, Points):
             frame = "free" if group.placed else "arm"
             feature, placement = group.feature.astype(np.int64), group.placement.astype(np.int64)
             index = problem.add_points(
-                f"points {number}", group.features_mm, frame, q_rad, probe, feature, placement, **at
+                f"points {number}", group.features_mm, frame, q_rad, probe, feature, placement, **conditions
             )
         elif isinstance(group, Sphere):
             touched = (q_rad, probe, group.placement.astype(np.int64))
             index = problem.add_sphere(
-                f"ball {number}", group.diameter_mm, group.balls_mm, *touched, inside=group.inside, **at
+                f"ball {number}", group.diameter_mm, group.balls_mm, *touched, inside=group.inside, **conditions
             )
         elif isinstance(group, Plane):
-            index = problem.add_plane(group.balls_mm, q_rad, probe, group.placement.astype(np.int64), **at)
+            index = problem.add_plane(group.balls_mm, q_rad, probe, group.placement.astype(np.int64), **conditions)
         assert index == number
     return problem
 
 
-def split(arm: Chain | Affected, readings: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """An oracle's readings: angles, and temperatures and sides of approach where there are any, by the core's words."""
-    q_rad, *more = (np.ascontiguousarray(part) for part in np.split(readings, readings.shape[1] // arm.joints, axis=1))
-    return q_rad, dict(zip(("warmth_k", "approach"), more, strict=False))
+def split(arm: Chain | Affected, readings: np.ndarray) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
+    """An oracle's readings: angles, and temperatures and approaches where there are any."""
+    n = arm.joints
+    q_rad, *told = (np.ascontiguousarray(readings[:, k * n : (k + 1) * n]) for k in range(3))
+    warmth_k, approach = (values if values.size else None for values in told)
+    return q_rad, warmth_k, approach
 
 
 def nothing_held(arm: Chain | Affected) -> np.ndarray:

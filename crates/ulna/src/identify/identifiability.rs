@@ -212,7 +212,7 @@ fn lost_directions(decomposition: &Decomposition, question: &Question, count: us
     // leading parameter 1, nothing that is rounding
     let sparse = |v: Vec<f64>| {
         let mut direction = vec![0.0; count];
-        let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
+        let leading = (0..v.len()).max_by(|&a, &b| rank(&v, a).total_cmp(&rank(&v, b))).unwrap_or(0);
         let unit = v[leading] / norms[leading];
         for a in (0..v.len()).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
             direction[kept[a]] = v[a] / norms[a] / unit;
@@ -234,6 +234,12 @@ fn lost_directions(decomposition: &Decomposition, question: &Question, count: us
     lost
 }
 
+/// By how much a column takes part. Of equals the later one leads, whatever rounding says: where half a backlash is a zero
+/// offset, the backlash is what is lost.
+fn rank(row: &[f64], column: usize) -> f64 {
+    row[column].abs() * (1.0 + 1e-9 * column as f64)
+}
+
 /// Gauss-Jordan with complete pivoting on the rows: each keeps one pivot that no other has.
 fn reduce(rows: &mut [Vec<f64>]) {
     let columns = rows.first().map_or(0, Vec::len);
@@ -241,7 +247,7 @@ fn reduce(rows: &mut [Vec<f64>]) {
     for k in 0..rows.len() {
         let candidates = (k..rows.len()).flat_map(|r| (0..columns).map(move |c| (r, c)));
         let free = candidates.filter(|&(_, c)| !used[c]);
-        let Some((row, pivot)) = free.max_by(|&(r, c), &(s, d)| rows[r][c].abs().total_cmp(&rows[s][d].abs())) else {
+        let Some((row, pivot)) = free.max_by(|&(r, c), &(s, d)| rank(&rows[r], c).total_cmp(&rank(&rows[s], d))) else {
             return;
         };
         used[pivot] = true;
