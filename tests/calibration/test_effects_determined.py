@@ -13,11 +13,16 @@ from tests.oracle.published import table_2
 import ulna._core as _core
 
 
-def lengths(arm, rng, count=300, travel=np.pi, warmth=None):
-    """Pairs of poses and the true distances, each pose with temperatures where there are any."""
+def lengths(arm, rng, count=300, travel=np.pi, warmth=None, approaches=None):
+    """Pairs of poses and the true distances, each pose with temperatures and approaches where there are any."""
     poses = [rng.uniform(-travel, travel, (count, arm.joints)) for _ in range(2)]
     if warmth is not None:
         poses = [np.hstack([q, warmth]) for q in poses]
+    if approaches is not None:
+        poses = [
+            np.hstack([q[:, : arm.joints], np.zeros(q.shape), approach])
+            for q, approach in zip(poses, approaches, strict=True)
+        ]
     q, p = poses
     return Lengths(q, p, np.linalg.norm(arm.tip(q) - arm.tip(p), axis=1))
 
@@ -86,6 +91,82 @@ def test_the_last_encoder_of_a_straight_probe_is_told():
     arm = affected(table_2(r_mm=0.0), rng, "harmonics")
     told = causes(arm, [lengths(arm, rng)])
     assert {"joint.7.c1"} in told["probe-on-axis"]
+
+
+def either_side(rng, arm, count=300):
+    """Approaches of both poses, each joint from either side."""
+    return [rng.choice([-1.0, 1.0], (count, arm.joints)) for _ in range(2)]
+
+
+def test_play_shows_where_joints_are_approached_from_both_sides():
+    rng = np.random.default_rng(5)
+    arm = affected(table_2(r_mm=40.0), rng, "backlash")
+    groups = [lengths(arm, rng, approaches=either_side(rng, arm))]
+    assert fits.rank_of(fits.reduced_jacobian(groups, arm)) == 32
+    assert causes(arm, groups) == {"base-frame": [{"joint.1.theta0"}, {"joint.1.d"}]}
+
+
+@pytest.mark.parametrize("joint", [1, 2, 3, 6, 7])
+@pytest.mark.parametrize(
+    ("side", "cause"), [(1.0, "approach-one-sided"), (-1.0, "approach-one-sided"), (0.0, "approach-unknown")]
+)
+def test_play_of_a_joint_approached_from_one_side_is_a_zero_offset(joint, side, cause):
+    rng = np.random.default_rng(6)
+    arm = affected(table_2(r_mm=40.0), rng, "backlash")
+    approaches = either_side(rng, arm)
+    for approach in approaches:
+        approach[:, joint - 1] = side
+    groups = [lengths(arm, rng, approaches=approaches)]
+    assert fits.rank_of(fits.reduced_jacobian(groups, arm)) == 31
+    told = causes(arm, groups)
+    # a zero offset of joint 1 is the base's, that of joint 7 the tip's, which lies on x
+    with_it = {1: set(), 7: {"probe.bent.y"}}.get(joint, {f"joint.{joint}.theta0"})
+    assert told[cause] == [{f"joint.{joint}.backlash"} | (with_it if side else set())]
+    assert set(told) == {"base-frame", cause}
+
+
+def test_what_is_lost_with_a_zero_offset_is_told_in_words():
+    rng = np.random.default_rng(7)
+    arm = affected(table_2(r_mm=40.0), rng, "backlash")
+    approaches = either_side(rng, arm)
+    for approach in approaches:
+        approach[:, 2] = -1.0
+    problem = core_problem(arm, [lengths(arm, rng, approaches=approaches)])
+    (lost,) = [one for one in _core.identify(problem, nothing_held(arm)).lost if not one["frame"]]
+    # b / 2 · (-1) and theta0 = ∓ b / 2 are the same turn, by the joint's sign
+    assert lost["combination"] == pytest.approx({"joint.3.backlash": 1.0, "joint.3.theta0": -0.5 * arm.sign[2]})
+    assert lost["because"].startswith("joint 3 was always approached from the same side")
+    assert "joint 3 approached from both sides" in lost["remedy"]
+
+
+def test_play_of_joint_1_needs_both_sides_while_the_artefact_stands():
+    """Where both ends of each length are approached from the same side, the play of joint 1 turns them together."""
+    rng = np.random.default_rng(8)
+    arm = affected(table_2(r_mm=40.0), rng, "backlash")
+    approaches = either_side(rng, arm)
+    approaches[1][:, 0] = approaches[0][:, 0]
+    groups = [lengths(arm, rng, approaches=approaches)]
+    assert fits.rank_of(fits.reduced_jacobian(groups, arm)) == 31
+    told = causes(arm, groups)
+    assert told["approach-one-sided"] == [{"joint.1.backlash"}]
+
+
+def test_readings_that_do_not_say_count_as_neither_side():
+    """One file without approaches beside one with a single side: the two are told apart by half the play."""
+    rng = np.random.default_rng(9)
+    arm = affected(table_2(r_mm=40.0), rng, "backlash")
+    said = lengths(arm, rng, approaches=[np.ones((300, 7))] * 2)
+    groups = [said, lengths(arm, rng)]
+    # but for joint 1, with which both ends of each length turn
+    assert fits.rank_of(fits.reduced_jacobian(groups, arm)) == 31
+    assert causes(arm, groups)["approach-one-sided"] == [{"joint.1.backlash"}]
+
+
+def test_play_of_a_straight_probes_last_joint_is_not_seen():
+    rng = np.random.default_rng(10)
+    arm = affected(table_2(r_mm=0.0), rng, "backlash")
+    told = causes(arm, [lengths(arm, rng, approaches=either_side(rng, arm))])
+    assert {"joint.7.backlash"} in told["probe-on-axis"]
 
 
 def seat_readings(arm, rng, travel):

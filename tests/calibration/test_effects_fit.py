@@ -12,19 +12,24 @@ import ulna._core as _core
 
 STATED = fits.Noise(np.full(7, 5e-6), 0.008)
 NORMAL_95 = 1.959963984540054
+BLOCKS = ["harmonics", "backlash", "expansion", "compliance", "harmonics backlash expansion compliance"]
 
 
 def lengths(arm, rng, count=250, warm=True):
-    """Pairs of poses and the true distances, each pose with the temperature of one of two sessions."""
+    """Pairs of poses and the true distances, each pose with the temperature of one of two sessions and each joint
+    approached from either side."""
     poses = [rng.uniform(-np.pi, np.pi, (count, arm.joints)) for _ in range(2)]
     if warm and arm.expansion_per_k is not None:
         session = np.where(np.arange(count) % 2 == 0, -4.0, 9.0)[:, None]
         poses = [np.hstack([q, np.repeat(session, arm.joints, axis=1)]) for q in poses]
+    if arm.backlash_rad is not None:
+        told = [np.hstack([q, np.zeros(q.shape)])[:, : 2 * arm.joints] for q in poses]
+        poses = [np.hstack([q, rng.choice([-1.0, 1.0], (count, arm.joints))]) for q in told]
     return Lengths(*poses, np.linalg.norm(arm.tip(poses[0]) - arm.tip(poses[1]), axis=1))
 
 
 @pytest.mark.parametrize("name", ["seven axes, as calibrated", "six axes", "parallel axes"])
-@pytest.mark.parametrize("blocks", ["harmonics", "expansion", "compliance", "harmonics expansion compliance"])
+@pytest.mark.parametrize("blocks", BLOCKS)
 def test_exact_readings_give_the_truth(name, blocks):
     """From an arm without the effects, its geometry wrong by 3 mm and 0.01 rad."""
     rng = np.random.default_rng(1)
@@ -69,7 +74,7 @@ def test_optimum_and_covariance_are_scipys():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("blocks", ["harmonics", "expansion", "compliance", "harmonics expansion compliance"])
+@pytest.mark.parametrize("blocks", BLOCKS)
 def test_intervals_hold_the_truth(blocks):
     """1000 simulated calibrations each: 95 % intervals of every parameter determined."""
     rng = np.random.default_rng(7)

@@ -17,8 +17,9 @@ from ulna.study.study import Study
 
 # An "arm" whose tip is simply its first three readings, in mm: the figures see tips only.
 GANTRY: Any = SimpleNamespace(
-    core=SimpleNamespace(tip=lambda q, probe, warmth_k: q[:, :3].copy()),
-    warmth_k=lambda temperature_c, count: None,
+    core=SimpleNamespace(tip=lambda q, probe: q[:, :3].copy()),
+    needs={},
+    conditions=lambda count, **said: {},
     probes={"tip": SimpleNamespace(ball_mm=None)},
 )
 

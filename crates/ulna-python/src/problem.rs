@@ -1,7 +1,7 @@
 //! `ulna._core.Problem`.
 
 use crate::arm::Arm;
-use crate::arrays::{array1, indices, rows, slice, warmth};
+use crate::arrays::{Told, array1, indices, rows, slice};
 use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -24,7 +24,7 @@ pub struct Problem {
 /// Touches as they were handed over.
 struct Touched<'a> {
     q_rad: Cow<'a, [f64]>,
-    warmth_k: Cow<'a, [f64]>,
+    told: Told<'a>,
     probe: Vec<usize>,
     feature: Vec<usize>,
     placement: Cow<'a, [i64]>,
@@ -34,7 +34,7 @@ impl<'a> Touched<'a> {
     fn new(
         encoders: usize,
         q_rad: &'a PyReadonlyArray2<'_, f64>,
-        warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        (warmth_k, approach): (Option<&'a PyReadonlyArrayDyn<'_, f64>>, Option<&'a PyReadonlyArrayDyn<'_, f64>>),
         probe: &PyReadonlyArray1<'_, i64>,
         feature: Option<&PyReadonlyArray1<'_, i64>>,
         placement: &'a PyReadonlyArray1<'_, i64>,
@@ -42,7 +42,7 @@ impl<'a> Touched<'a> {
         let q_rad = rows(q_rad, encoders, "the poses")?;
         let count = q_rad.len() / encoders;
         Ok(Touched {
-            warmth_k: warmth(warmth_k, count, encoders)?,
+            told: Told::new(warmth_k, approach, count, encoders)?,
             probe: indices(probe, "probe")?,
             feature: feature.map_or_else(|| Ok(vec![0; count]), |feature| indices(feature, "feature"))?,
             placement: slice(placement),
@@ -52,7 +52,7 @@ impl<'a> Touched<'a> {
 
     fn rows(&self) -> TouchRows<'_> {
         TouchRows {
-            poses: Angles { q_rad: &self.q_rad, warmth_k: &self.warmth_k },
+            poses: Angles { q_rad: &self.q_rad, conditions: self.told.conditions() },
             probe: &self.probe,
             feature: &self.feature,
             placement: &self.placement,
@@ -73,7 +73,8 @@ impl Problem {
         Ok(Problem { inner })
     }
 
-    #[pyo3(signature = (artefact, q_rad, p_rad, probe, length_mm, length_u_mm=0.0, fitted=false, warmth_k=None))]
+    #[pyo3(signature = (artefact, q_rad, p_rad, probe, length_mm, length_u_mm=0.0, fitted=false, warmth_k=None,
+                        approach=None, p_approach=None))]
     #[allow(clippy::too_many_arguments)]
     fn add_lengths(
         &mut self,
@@ -85,13 +86,16 @@ impl Problem {
         length_u_mm: f64,
         fitted: bool,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
+        p_approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let n = self.inner.arm().encoders();
-        let q_rad = rows(&q_rad, n, "the first poses")?;
+        let (q_rad, p_rad) = (rows(&q_rad, n, "the first poses")?, rows(&p_rad, n, "the second poses")?);
+        let first = Told::new(warmth_k.as_ref(), approach.as_ref(), q_rad.len() / n, n)?;
+        let second = Told::new(warmth_k.as_ref(), p_approach.as_ref(), p_rad.len() / n, n)?;
         let data = LengthRows {
-            warmth_k: &warmth(warmth_k.as_ref(), q_rad.len() / n, n)?,
-            q_rad: &q_rad,
-            p_rad: &rows(&p_rad, n, "the second poses")?,
+            from: Angles { q_rad: &q_rad, conditions: first.conditions() },
+            to: Angles { q_rad: &p_rad, conditions: second.conditions() },
             probe: &indices(&probe, "probe")?,
             length_mm: &slice(&length_mm),
         };
@@ -99,7 +103,7 @@ impl Problem {
     }
 
     #[pyo3(signature = (artefact, features_mm, frame, q_rad, probe, feature, placement, u_mm=None, labels=None,
-                        fitted=false, warmth_k=None))]
+                        fitted=false, warmth_k=None, approach=None))]
     #[allow(clippy::too_many_arguments)]
     fn add_points(
         &mut self,
@@ -114,6 +118,7 @@ impl Problem {
         labels: Option<Vec<String>>,
         fitted: bool,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let coordinates = rows(&features_mm, 3, "the features")?;
         let coordinates: Vec<[f64; 3]> = coordinates.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect();
@@ -145,12 +150,13 @@ impl Problem {
             },
         };
         let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, Some(&feature), &placement)?;
+        let touched =
+            Touched::new(n, &q_rad, (warmth_k.as_ref(), approach.as_ref()), &probe, Some(&feature), &placement)?;
         self.inner.add_points(&features, touched.rows()).map_err(raise)
     }
 
     #[pyo3(signature = (artefact, diameter_mm, balls_mm, q_rad, probe, placement, diameter_u_mm=0.0, fitted=false,
-                        inside=false, warmth_k=None))]
+                        inside=false, warmth_k=None, approach=None))]
     #[allow(clippy::too_many_arguments)]
     fn add_sphere(
         &mut self,
@@ -164,6 +170,7 @@ impl Problem {
         fitted: bool,
         inside: bool,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let ball = BallArtefact {
             name: artefact,
@@ -174,11 +181,11 @@ impl Problem {
             balls_mm: &slice(&balls_mm),
         };
         let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, None, &placement)?;
+        let touched = Touched::new(n, &q_rad, (warmth_k.as_ref(), approach.as_ref()), &probe, None, &placement)?;
         self.inner.add_sphere(&ball, touched.rows()).map_err(raise)
     }
 
-    #[pyo3(signature = (balls_mm, q_rad, probe, placement, warmth_k=None))]
+    #[pyo3(signature = (balls_mm, q_rad, probe, placement, warmth_k=None, approach=None))]
     fn add_plane(
         &mut self,
         balls_mm: PyReadonlyArray1<'_, f64>,
@@ -186,9 +193,10 @@ impl Problem {
         probe: PyReadonlyArray1<'_, i64>,
         placement: PyReadonlyArray1<'_, i64>,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, None, &placement)?;
+        let touched = Touched::new(n, &q_rad, (warmth_k.as_ref(), approach.as_ref()), &probe, None, &placement)?;
         self.inner.add_plane(&slice(&balls_mm), touched.rows()).map_err(raise)
     }
 

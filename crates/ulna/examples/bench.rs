@@ -50,7 +50,8 @@ fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> 
     let distance = |k: usize| (0..3).map(|j| (from[3 * k + j] - to[3 * k + j]).powi(2)).sum::<f64>().sqrt();
     let length_mm: Vec<f64> = (0..count).map(distance).collect();
     let mut problem = Problem::new(start, noise).expect("a valid problem");
-    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &[], probe: &vec![0; count], length_mm: &length_mm };
+    let rows =
+        LengthRows { from: Angles::cold(&q), to: Angles::cold(&p), probe: &vec![0; count], length_mm: &length_mm };
     problem.add_lengths("bar", rows, 0.0, false).expect("valid rows");
     problem
 }

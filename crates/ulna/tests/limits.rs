@@ -5,6 +5,7 @@ mod common;
 use common::{any_arm, rng};
 use ulna::artefacts::Noise;
 use ulna::artefacts::length::LengthRows;
+use ulna::kinematics::Angles;
 use ulna::problem::Problem;
 
 #[test]
@@ -32,8 +33,12 @@ fn a_length_that_is_none_is_refused() {
     for length_mm in [0.0, -1.0, 1e-300, 1e300, f64::NAN] {
         let arm = any_arm(&mut rng(1), 5);
         let mut problem = Problem::new(arm, None).unwrap();
-        let rows =
-            LengthRows { q_rad: &[0.1; 5], p_rad: &[0.2; 5], warmth_k: &[], probe: &[0], length_mm: &[length_mm] };
+        let rows = LengthRows {
+            from: Angles::cold(&[0.1; 5]),
+            to: Angles::cold(&[0.2; 5]),
+            probe: &[0],
+            length_mm: &[length_mm],
+        };
         let message = problem.add_lengths("bar", rows, 0.0, false).unwrap_err().to_string();
         assert!(message.starts_with("a length of artefact bar, mm, is "), "{message}");
     }

@@ -8,6 +8,7 @@ What an arm does beyond its geometry is in `ulna.arm.effects.effects`.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -15,9 +16,11 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ulna.arm.conditions import Condition, Conditions
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.effects import effects
-from ulna.arm.effects.effects import REFERENCE_C, Effects
+from ulna.arm.effects.effect import Effect
+from ulna.arm.effects.effects import Effects
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.ground.arrays import F64, Bool
@@ -74,7 +77,7 @@ class ArmData:
                 np.array([probe.tip_mm for probe in self.probes.values()]).reshape(-1, 3),
                 self.full_last_link,
             )
-            return arm.with_effects(**effects.for_core(self._effects, self.gravity))
+            return arm.with_effects(effects.for_core(self._effects, self.gravity))
         except _core.UlnaError as error:
             raise UlnaInputError(f"arm '{self.name}': {error}") from None
 
@@ -107,7 +110,17 @@ class ArmData:
     @property
     def extras(self) -> list[effects.Extra]:
         """The blocks beyond geometry that the arm has."""
-        return effects.extras_of(self._effects)
+        return [effect.name for effect in self.effects]
+
+    @property
+    def effects(self) -> list[Effect]:
+        """The same, as what knows all about them."""
+        return effects.effects_of(self._effects)
+
+    @property
+    def needs(self) -> dict[Condition, Effect]:
+        """On which conditions of a pose its tip depends, each with the effect that asks for it."""
+        return effects.needs_of(self._effects)
 
     def with_parameters(self, parameters: ArrayLike) -> Self:
         """The same arm with other numbers, (P,) in the order of `parameter_names`, and no uncertainty."""
@@ -131,7 +144,8 @@ class ArmData:
             for joint, (theta0, alpha, a, fourth) in zip(self.joints, links, strict=False)
         ]
         joints += self.joints[linked:]
-        beyond = effects.from_core(self._effects, x[effects_at:])
+        values = dict(zip(self.parameter_names[effects_at:], x[effects_at:].tolist(), strict=True))
+        beyond = effects.from_core(self._effects, values)
         probes = {
             name: replace(probe, x_mm=tip_x, y_mm=tip_y, z_mm=tip_z)
             for (name, probe), (tip_x, tip_y, tip_z) in zip(self.probes.items(), tips, strict=True)
@@ -161,41 +175,66 @@ class ArmData:
             raise UlnaInputError(f"arm '{self.name}' has no probe '{name}'.{nearest(name, names)}")
         return names.index(name)
 
-    def tip(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None) -> F64:
+    def tip(
+        self,
+        q_rad: ArrayLike,
+        probe: str | None = None,
+        temperature_c: ArrayLike | None = None,
+        approach: ArrayLike | None = None,
+    ) -> F64:
         """Encoder angles (N, n) rad → tip positions (N, 3) mm in the base frame; (n,) → (3,).
 
-        temperature_c: one number, (N,) or (N, n) per joint's link, °C. Raises UlnaInputError where the arm's links grow
-        with it and it is not given.
+        temperature_c: one number, (N,) or (N, n) per joint's link, °C. approach: (N, n) or (n,), +1 where the encoder's
+        angle had been rising, -1 where it had been falling, 0 where nobody knows. Raises UlnaInputError where the tip
+        depends on one of them (`needs`) and it is not given.
         """
         q, single = self._angles(q_rad)
-        p_mm = self.core.tip(q, self.probe_index(probe), self.warmth_k(temperature_c, len(q)))
+        p_mm = self.core.tip(q, self.probe_index(probe), **self.conditions(len(q), temperature_c, approach))
         return p_mm[0] if single else p_mm
 
-    def jacobian(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: ArrayLike | None = None) -> F64:
+    def jacobian(
+        self,
+        q_rad: ArrayLike,
+        probe: str | None = None,
+        temperature_c: ArrayLike | None = None,
+        approach: ArrayLike | None = None,
+    ) -> F64:
         """(N, n) rad → (N, 3, parameters): ∂p/∂parameter in mm for a unit of each; (n,) → (3, parameters).
 
-        temperature_c as for `tip`.
+        temperature_c and approach as for `tip`.
         """
         q, single = self._angles(q_rad)
-        jacobian = self.core.jacobian(q, self.probe_index(probe), self.warmth_k(temperature_c, len(q)))
+        jacobian = self.core.jacobian(q, self.probe_index(probe), **self.conditions(len(q), temperature_c, approach))
         return jacobian[0] if single else jacobian
 
-    def warmth_k(self, temperature_c: ArrayLike | None, count: int) -> F64 | None:
-        """(count,) or (count, n): how much warmer than 20 °C each of so many poses is; None where it does not matter.
+    def conditions(
+        self, count: int, temperature_c: ArrayLike | None = None, approach: ArrayLike | None = None
+    ) -> Conditions:
+        """Of so many poses, as the core takes them: those that the arm's tip depends on.
 
-        Raises UlnaInputError where the arm's links grow with the temperature and it is not given.
+        Raises UlnaInputError where it depends on one that is not given for every pose.
         """
-        if "link-expansion" not in self.extras:
-            return None
-        if temperature_c is None or not np.isfinite(temperature_c).all():
-            raise UlnaInputError(
-                f"arm '{self.name}': its links grow with temperature, but the temperature is not given for every pose; "
-                "expected °C. Give it (the column temperature, or temperature_c)."
-            )
-        warmth = np.asarray(temperature_c, dtype=np.float64) - REFERENCE_C
-        if warmth.ndim == 0:
-            return np.full(count, float(warmth))
-        return np.ascontiguousarray(warmth.reshape(count, -1) if warmth.ndim == 2 else warmth)
+        said = {"temperature_c": temperature_c, "approach": approach}
+        found = Conditions()
+        for condition, effect in self.needs.items():
+            given = said[condition.said]
+            if given is None or not condition.known(given):
+                raise UlnaInputError(
+                    f"arm '{self.name}': its {effect.whose} {effect.does}, but {condition.missing}; expected "
+                    f"{condition.expected}. Give it ({condition.give})."
+                )
+            found[condition.core] = condition.for_core(given, count, self.n)  # type: ignore[literal-required]
+        return found
+
+    def check_covered(self, label: str, what: str, stated: Collection[Condition] = ()) -> None:
+        """Whether `what` ("plans") covers all conditions that the tip depends on: it states some of them. label: of
+        the file. Raises UlnaInputError."""
+        for condition, effect in self.needs.items():
+            if condition not in stated:
+                raise UlnaInputError(
+                    f"{label}: the {effect.whose} of arm '{self.name}' {effect.does}, which {what} do not cover. "
+                    f"Remove {' and '.join(effect.table.model_fields)} from the arm file."
+                )
 
     @property
     def _effects(self) -> list[Effects]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ulna.arm.effects.effects import extra_of
+from ulna.arm.effects.effects import EFFECTS, extra_of
 
 DRAWN_MM, DRAWN_RAD = 1.0, 0.01
-DRAWN = {"mm": DRAWN_MM, "rad": DRAWN_RAD, "1/K": 3e-5, "rad/(N m)": 1e-3}
-"""What may be of each unit before anybody has measured: a drawing, a material, a bearing."""
+DRAWN = {"mm": DRAWN_MM, "rad": DRAWN_RAD}
+"""What may be of geometry before anybody has measured: what a drawing says; effects know their own."""
 
 NEXT_TO_NOTHING = 1e-3
 """Of the largest step of a combination, in what may be of each: a smaller one is not named."""
@@ -16,15 +16,22 @@ NEXT_TO_NOTHING = 1e-3
 
 def unit_of(parameter: str) -> str:
     """ "rad", "mm", "1/K" or "rad/(N m)", by the parameter's name."""
-    if parameter.startswith("joint."):
-        own = {"theta0": "rad", "alpha": "rad", "beta": "rad", "expansion": "1/K", "compliance": "rad/(N m)"}
-        return own.get(parameter.rsplit(".", 1)[-1], "rad" if extra_of(parameter) else "mm")
-    return "mm"
+    extra = extra_of(parameter)
+    if extra is not None:
+        return EFFECTS[extra].unit
+    angle = parameter.startswith("joint.") and parameter.rsplit(".", 1)[-1] in ("theta0", "alpha", "beta")
+    return "rad" if angle else "mm"
+
+
+def drawn(parameter: str) -> float:
+    """What may be of a parameter before anybody has measured, in its unit."""
+    extra = extra_of(parameter)
+    return DRAWN[unit_of(parameter)] if extra is None else EFFECTS[extra].drawn
 
 
 def steps(combination: Mapping[str, float]) -> dict[str, float]:
     """Sizes of a combination's steps, in what may be of each parameter."""
-    return {name: abs(weight) / DRAWN[unit_of(name)] for name, weight in combination.items()}
+    return {name: abs(weight) / drawn(name) for name, weight in combination.items()}
 
 
 def worth_naming(combination: Mapping[str, float]) -> dict[str, float]:

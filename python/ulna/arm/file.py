@@ -78,18 +78,9 @@ def _arm(file: ArmFile, path: Path, make: type[AnyArm]) -> AnyArm:
     if not (x or y or z):
         raise UlnaInputError(f"{path}: key 'gravity': got {file.gravity}, no direction; expected, say, [0, 0, -1].")
     arm = make(file.name or path.stem, joints, probes, full_last_link=file.full_last_link, gravity=(x, y, z))
-    _check_masses(arm, path)
+    for effect in arm.effects:
+        effect.check_joints([joint.effects for joint in joints], path)
     return arm
-
-
-def _check_masses(arm: ArmData, path: Path) -> None:
-    """Joints that give way give way to something. Raises UlnaInputError."""
-    gives = next((k for k, joint in enumerate(arm.joints, 1) if joint.effects.compliance_rad_per_nm), None)
-    if gives is not None and not any(joint.effects.mass_kg for joint in arm.joints):
-        raise UlnaInputError(
-            f"{path}: key 'joint.{gives}.compliance': a joint gives way to the weight of its links, but no joint has a "
-            "mass; expected mass (kg) and centre of each. Add them, or remove the key."
-        )
 
 
 def _probe(name: str, table: ProbeTable, units: Units, path: Path) -> Probe:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
-from ulna.arm.effects.effects import Effects
+from ulna.arm.effects.effects import EFFECTS, Effects, joint_tables
 from ulna.arm.joint import Joint
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
-
-#: no encoder's error has a wave as short as this part of a turn
-MOST_ORDER = 100
 
 
 def _no_truth(value: Any) -> Any:
@@ -26,7 +22,7 @@ def _no_truth(value: Any) -> Any:
     return value
 
 
-class JointTable(Strict):
+class GeometryTable(Strict):
     """One joint, from the base to the probe: `turn = sign * encoder - theta0`, then the link to the next axis."""
 
     theta0: float | None = None
@@ -47,16 +43,14 @@ class JointTable(Strict):
     """Lowest and highest encoder angle, in the file's angle unit."""
     counts_per_turn: Annotated[float, Field(gt=0)] | None = None
     """Needed for readings in counts."""
-    harmonics: dict[str, float] | None = None
-    """Error of the encoder, { c1, s1, c2, s2, … }: q + Σ c_k cos k q + s_k sin k q, in the file's angle unit."""
-    expansion: float | None = None
-    """Of the link (of the last joint: of the probe), 1/K; lengths are those at 20 °C."""
-    compliance: float | None = None
-    """How far the joint gives way to gravity's moment about its axis, in the file's angle unit for each N m."""
-    mass: Annotated[float, Field(ge=0, le=1e6)] | None = None
-    """Of the link, kg; for compliance."""
-    centre: Annotated[list[float], Field(min_length=3, max_length=3)] | None = None
-    """The centre of that mass in the frame after the link, in the file's length unit."""
+
+
+if TYPE_CHECKING:
+    JointTable = GeometryTable
+else:
+    # models take the fields of the last base first: the keys of geometry, then those of each effect
+    class JointTable(*reversed(joint_tables()), GeometryTable):
+        """One joint, from the base to the probe: `turn = sign * encoder - theta0`, then the link to the next axis."""
 
 
 def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Path) -> Joint:
@@ -77,8 +71,15 @@ def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Pat
         name=table.name,
         limits_rad=None if table.limits is None else (table.limits[0] * units.rad, table.limits[1] * units.rad),
         counts_per_turn=table.counts_per_turn,
-        effects=_effects(table, number, units, path),
+        effects=Effects(**_beyond(table, number, units, path)),
     )
+
+
+def _beyond(table: JointTable, number: int, units: Units, path: Path) -> dict[str, Any]:
+    said: dict[str, Any] = {}
+    for effect in EFFECTS.values():
+        said |= effect.read(table, f"joint.{number}", units, path)
+    return said
 
 
 def _check_geometry(table: JointTable, number: int, bare: bool, path: Path) -> None:
@@ -105,26 +106,6 @@ def _check_geometry(table: JointTable, number: int, bare: bool, path: Path) -> N
             )
 
 
-def _effects(table: JointTable, number: int, units: Units, path: Path) -> Effects:
-    harmonics: dict[int, list[float]] = {}
-    for key, value in (table.harmonics or {}).items():
-        match = re.fullmatch(r"([cs])([1-9][0-9]*)", key)
-        if match is None or int(match[2]) > MOST_ORDER:
-            raise UlnaInputError(
-                f"{path}: key 'joint.{number}.harmonics.{key}': expected c1, s1, c2, s2, …: cosine and sine amplitude "
-                f"of an order from 1 to {MOST_ORDER}. Correct it."
-            )
-        harmonics.setdefault(int(match[2]), [0.0, 0.0])["cs".index(match[1])] = value * units.rad
-    x, y, z = table.centre or (0.0, 0.0, 0.0)
-    return Effects(
-        {order: (c, s) for order, (c, s) in sorted(harmonics.items())},
-        table.expansion,
-        None if table.compliance is None else table.compliance * units.rad,
-        table.mass or 0.0,
-        (x * units.mm, y * units.mm, z * units.mm),
-    )
-
-
 def joint_document(joint: Joint, bare: bool) -> dict[str, Any]:
     """The joint with the keys of an arm file, in mm and rad."""
     table: dict[str, Any] = {} if joint.name is None else {"name": joint.name}
@@ -138,20 +119,6 @@ def joint_document(joint: Joint, bare: bool) -> dict[str, Any]:
         table |= {"limits": list(joint.limits_rad)}
     if joint.counts_per_turn is not None:
         table |= {"counts_per_turn": joint.counts_per_turn}
-    return table | _effects_document(joint.effects)
-
-
-def _effects_document(effects: Effects) -> dict[str, Any]:
-    table: dict[str, Any] = {}
-    if effects.harmonics_rad:
-        pairs = effects.harmonics_rad.items()
-        table["harmonics"] = {
-            f"{part}{order}": value for order, cs in pairs for part, value in zip("cs", cs, strict=True)
-        }
-    if effects.expansion_per_k is not None:
-        table["expansion"] = effects.expansion_per_k
-    if effects.compliance_rad_per_nm is not None:
-        table["compliance"] = effects.compliance_rad_per_nm
-    if effects.mass_kg:
-        table |= {"mass": effects.mass_kg, "centre": list(effects.centre_mm)}
+    for effect in EFFECTS.values():
+        table |= effect.written(joint.effects)
     return table

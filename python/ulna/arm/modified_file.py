@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from ulna.ground.errors import UlnaInputError
 
 if TYPE_CHECKING:
-    from ulna.arm.tables import ArmFile
+    from ulna.arm.effects.effects import EFFECTS
+from ulna.arm.tables import ArmFile
 
 
 def check_modified(file: ArmFile, path: Path) -> None:
@@ -19,11 +20,8 @@ def check_modified(file: ArmFile, path: Path) -> None:
             "table, whose last row becomes part of the tip. Remove it, or write the arm in the other form."
         )
     for k, joint in enumerate(file.joint, start=1):
-        if joint.mass:
-            raise UlnaInputError(
-                f"{path}: key 'joint.{k}.mass': a centre of mass is told in the frame after a link, which a modified "
-                'table does not have; expected masses with convention = "dh" only. Write the arm in that form.'
-            )
+        for effect in EFFECTS.values():
+            effect.check_modified(joint, f"joint.{k}", path)
         if joint.model == "hayati" or joint.beta:
             got = "model': got 'hayati'" if joint.model == "hayati" else f"beta': got {joint.beta:g}"
             raise UlnaInputError(

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 import ulna._core as _core
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.entering import enter_points
 from ulna.artefacts.kind import (
@@ -71,9 +72,9 @@ class Bar(Kind):
         """Its length."""
         return [Dimension("length", artefact.length_mm or 0.0, artefact.u_mm, artefact.fitted)]
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """As two points, of which the distance is uncertain."""
-        enter_points(problem, group, group.artefact.u_mm, warmth_k)
+        enter_points(problem, group, group.artefact.u_mm, conditions[0])
 
     def check_readings(self, group: Readings, files: Sequence[InputFile], study: Path) -> None:
         """A placement of a bar tells a length only where both of its seats were touched. Raises UlnaInputError."""

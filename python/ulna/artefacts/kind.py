@@ -16,6 +16,7 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.artefacts.tables import StatedTable, TouchedTable
@@ -123,8 +124,8 @@ class Kind(ABC):
         """What a certificate states of it as single numbers."""
 
     @abstractmethod
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
-        """Give the readings to the core. balls_mm (P,) of the arm's probes; warmth_k as in `Arm.warmth_k`."""
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
+        """Give the readings to the core. balls_mm (P,) of the arm's probes; conditions: of each pose of a row."""
 
     def check_probes(self, artefact: Artefact, arm: Arm, used: Sequence[int], label: str) -> None:
         """Whether the probes (indices) that are used can touch it, and are known where it matters; label: what messages

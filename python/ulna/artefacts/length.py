@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 import ulna._core as _core
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kind import (
     Dimension,
@@ -66,10 +67,11 @@ class Length(Kind):
         """What all lengths have in common, where there is one."""
         return [Dimension("length", artefact.length_mm or 0.0, artefact.u_mm, artefact.fitted)]
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """As rows of two poses and a length."""
         assert group.p_rad is not None
         assert group.length_mm is not None
+        first, second = conditions
         problem.add_lengths(
             group.artefact.name,
             np.ascontiguousarray(group.q_rad),
@@ -78,7 +80,8 @@ class Length(Kind):
             group.length_mm,
             group.artefact.u_mm,
             group.artefact.fitted,
-            warmth_k,
+            **first,
+            p_approach=second.get("approach"),
         )
 
     def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:

@@ -10,6 +10,7 @@ from pydantic import Field
 
 import ulna._core as _core
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kind import Dimension, Errors, Tips, Touches, Touching
 from ulna.artefacts.readings import Readings
@@ -53,9 +54,10 @@ class Plane(Surface):
         """None."""
         return []
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """With the probes' balls."""
-        problem.add_plane(balls_mm, np.ascontiguousarray(group.q_rad), group.probe, group.placement_code, warmth_k)
+        q_rad = np.ascontiguousarray(group.q_rad)
+        problem.add_plane(balls_mm, q_rad, group.probe, group.placement_code, **conditions[0])
 
     def check_probes(self, artefact: Artefact, arm: Arm, used: Sequence[int], label: str) -> None:
         """A plane touched with one probe does not need its ball: it lies by half of it farther in, that is all. With

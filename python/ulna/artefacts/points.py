@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 import ulna._core as _core
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.entering import enter_points
 from ulna.artefacts.features import features_of_file
@@ -117,9 +118,9 @@ class Points(Kind):
         """None that is one number: each coordinate is uncertain by itself."""
         return []
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """With the uncertainty of every feature."""
-        enter_points(problem, group, _u_mm(group.artefact), warmth_k)
+        enter_points(problem, group, _u_mm(group.artefact), conditions[0])
 
     def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:
         """Scatter in the seats; lengths between them, where they stand free; coordinates."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.arm.conditions import CONDITIONS, Condition
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.labels import Labels
 from ulna.ground.arrays import F64, I64, Bool
@@ -49,12 +51,30 @@ class Readings:
     """(N,) str, where the file has a column ``id``."""
     temperature_c: F64 | None = None
     """(N,) or (N, n), °C."""
+    approach: F64 | None = None
+    """(N, n) +1 where the encoder's angle had been rising, -1 where it had been falling, 0 where nobody knows."""
+    p_approach: F64 | None = None
+    """(N, n) the same of the second pose; length rows only."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, Labels.of(value) if name == "placement" else value)
 
     def __len__(self) -> int:
         return len(self.q_rad)
+
+    @property
+    def said(self) -> list[dict[str, F64 | None]]:
+        """Of each pose of a row: the arguments of `Arm.conditions`."""
+        approaches = [self.approach] if self.p_rad is None else [self.approach, self.p_approach]
+        return [{"temperature_c": self.temperature_c, "approach": approach} for approach in approaches]
+
+    def conditions(self) -> Iterator[tuple[Condition, str, F64]]:
+        """Those that are said, each with the name of its columns."""
+        for condition in CONDITIONS:
+            for name, field in condition.fields.items():
+                said = getattr(self, field)
+                if said is not None:
+                    yield condition, name, said
 
     @property
     def labels(self) -> Labels:
@@ -79,6 +99,8 @@ class Readings:
             file=of(self.file),
             id=of(self.id),
             temperature_c=of(self.temperature_c),
+            approach=of(self.approach),
+            p_approach=of(self.p_approach),
         )
 
     @property

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 import ulna._core as _core
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.entering import enter_points
 from ulna.artefacts.kind import Dimension, Errors, Kind, Tips, Touches, Touching, features_mm, touched_features
@@ -43,9 +44,9 @@ class Seat(Kind):
         """None: only where it is, nobody knows."""
         return []
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """As one point."""
-        enter_points(problem, group, 0.0, warmth_k)
+        enter_points(problem, group, 0.0, conditions[0])
 
     def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:
         """Scatter in the seat."""

@@ -9,6 +9,7 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kind import Dimension, Errors, Tips, Touches, Touching, off_by
 from ulna.artefacts.readings import Readings
@@ -57,7 +58,7 @@ class Sphere(Surface):
         """Its diameter."""
         return [Dimension("diameter", artefact.diameter_mm or 0.0, artefact.u_mm, artefact.fitted)]
 
-    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, warmth_k: F64 | None) -> None:
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """With its diameter and the probes' balls."""
         artefact = group.artefact
         assert artefact.diameter_mm is not None
@@ -71,7 +72,7 @@ class Sphere(Surface):
             artefact.u_mm,
             artefact.fitted,
             artefact.inside,
-            warmth_k,
+            **conditions[0],
         )
 
     def check_probes(self, artefact: Artefact, arm: Arm, used: Sequence[int], label: str) -> None:

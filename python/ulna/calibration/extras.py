@@ -9,13 +9,13 @@ by Student's factor). Of harmonics of several orders each is judged besides, as 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import Literal
 
 import numpy as np
 
-from ulna.arm.effects.effects import PATTERNS, Extra
+from ulna.arm.effects.effects import EFFECTS, Extra
 from ulna.calibration.figures import overall_figures
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import Figures
@@ -30,8 +30,6 @@ Verdict = Literal["earned", "undecided", "not-earned"]
 #: more placements than this are dealt into folds
 MOST_GROUPS = 10
 FOLDS = 5
-#: more orders of harmonics than this are judged as one block only: each costs as many fits as there are groups
-MOST_ORDERS = 3
 #: one standard deviation of a normal distribution, one-sided: what a difference must exceed by Student's factor
 CONFIDENCE = 0.8413
 
@@ -77,23 +75,18 @@ def judge_extras(study: Study, progress: Progress | None = None) -> list[JudgedE
     told = _Told(progress, (1 + len(parts)) * len(groups))
     whole = [_left_out(study, fold, told) for fold in groups]
     judged = []
-    for extra, order in parts:
-        reduced = [_left_out(_without(study, extra, order), fold, told) for fold in groups]
+    for extra, order, patterns in parts:
+        reduced = [_left_out(_without(study, patterns), fold, told) for fold in groups]
         found = compared(extra, order, reduced, whole, by)
         if found is not None:
             judged.append(found)
     return judged
 
 
-def _parts(study: Study) -> list[tuple[str, int | None]]:
-    """What is judged: each block, and of a few orders of harmonics each order."""
-    parts: list[tuple[str, int | None]] = []
-    for extra in study.fit.extras:
-        parts.append((extra, None))
-        orders = sorted(set(study.fit.harmonics)) if extra == "encoder-harmonics" else []
-        if 1 < len(orders) <= MOST_ORDERS:
-            parts += [(extra, order) for order in orders]
-    return parts
+def _parts(study: Study) -> list[tuple[str, int | None, tuple[str, ...]]]:
+    """What is judged: each block, and of a few orders of harmonics each order; with patterns of its parameters."""
+    fit = study.fit
+    return [(extra, *part) for extra in fit.extras for part in EFFECTS[extra].judged(fit.harmonics)]
 
 
 def _groups(study: Study) -> tuple[str, list[Fold]]:
@@ -105,9 +98,8 @@ def _groups(study: Study) -> tuple[str, list[Fold]]:
     return (by, groups) if len(groups) <= MOST_GROUPS else folds(study, FOLDS)
 
 
-def _without(study: Study, extra: str, order: int | None) -> Study:
-    """The study with a block, or one order of it, held as the arm file has it: at zero, usually."""
-    patterns = PATTERNS[extra] if order is None else [f"joint.*.c{order}", f"joint.*.s{order}"]
+def _without(study: Study, patterns: Sequence[str]) -> Study:
+    """The study with a block, or a part of it, held as the arm file has it: at zero, usually."""
     hold = [*study.fit.hold, *patterns]
     return dataclasses.replace(study, fit=dataclasses.replace(study.fit, hold=hold))
 
@@ -152,4 +144,4 @@ def compared(
     verdict: Verdict = "undecided"
     if u is not None and abs(better) > u * stdtrit(len(gains) - 1, CONFIDENCE):
         verdict = "earned" if better > 0 else "not-earned"
-    return JudgedExtra(cast(Extra, extra), figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)
+    return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)

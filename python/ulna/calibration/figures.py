@@ -19,7 +19,7 @@ from ulna.artefacts.quantities import NAMES, QUANTITIES, Quantity
 from ulna.artefacts.readings import Readings
 from ulna.calibration.placements import Figures, Placements
 from ulna.ground.arrays import F64, I64
-from ulna.study.assembly import balls_mm, warmth_k
+from ulna.study.assembly import balls_mm, conditions_of
 from ulna.study.study import Study
 
 LARGEST = [name for quantity in QUANTITIES if quantity.figures == ("largest",) for name in quantity.names()]
@@ -59,11 +59,11 @@ def group_errors(arm: Arm, study: Study) -> list[GroupErrors]:
 def _group(arm: Arm, study: Study, readings: Readings) -> GroupErrors:
     # one probe for all is much quicker than one for each row
     probe = int(readings.probe[0]) if (readings.probe == readings.probe[0]).all() else readings.probe
-    warmth = warmth_k(study, arm, readings)
-    first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, warmth)
+    conditions = conditions_of(study, arm, readings)
+    first_mm = arm.core.tip(np.ascontiguousarray(readings.q_rad), probe, **conditions[0])
     second_mm = None
     if readings.p_rad is not None:
-        second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, warmth)
+        second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, **conditions[1])
     code, labels = readings.labels.as_they_appear()
     tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code)
     return GroupErrors(readings, labels, code, kind_of(readings.artefact).errors(readings, tips))

@@ -81,7 +81,8 @@ def job_of(study: Study, truth: Arm, runs: int, seed: int, piece_runs: int = PIE
     parts.append(repr((study.noise, study.fit)))
     for group in study.readings:
         parts.append(repr((group.artefact, group.placement.tolist())))
-        parts += [group.q_rad, group.p_rad, group.length_mm, group.probe, group.feature, group.temperature_c]
+        parts += [group.q_rad, group.p_rad, group.length_mm, group.probe, group.feature]
+        parts += [said for _, _, said in group.conditions()]
     content = {"runs": runs, "seed": seed, "piece_runs": piece_runs, "study_sha256": sha256_of(*parts)}
     return {"job": "recalibrations", **content}
 

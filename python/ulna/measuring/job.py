@@ -6,12 +6,14 @@ import math
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
 from ulna.arm.covariance_file import noise_of_result
 from ulna.arm.file import WHAT
 from ulna.formats.header import Header, Piece
@@ -22,7 +24,8 @@ from ulna.formats.units import MM_PER
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
 from ulna.study.readings.checks import Outside, check_scale
-from ulna.study.readings.columns import check_columns, known_columns, temperature_columns
+from ulna.study.readings.columns import check_columns, known_columns
+from ulna.study.readings.conditions import check_values, columns_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 
 F64 = NDArray[np.float64]
@@ -59,8 +62,9 @@ class MeasureJob:
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
         check_columns(self.header, self.arm.n, self.arm.name, remarks)
-        self._temperature_c = temperature_c
-        self._warm = self._temperatures(remarks)
+        self._given = {"temperature_c": temperature_c}
+        self._columns = self._needed(remarks)
+        self._numbers = [*self._q, *(column for columns in self._columns.values() for column in columns)]
         self._texts = [name for name in ("id", "probe") if name in self.header.columns]
         self._probe = self._fixed_probe(probe, remarks)
         if "p1" in self.header.columns:
@@ -92,6 +96,7 @@ class MeasureJob:
         for piece in self._pieces():
             self._angles(piece)
             self._probes(piece)
+            self._conditions(piece)
         self._outside = Outside(self.arm, "q")
 
     def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
@@ -113,20 +118,20 @@ class MeasureJob:
         return [] if self._uncertainty is None else self._uncertainty.notes
 
     def _pieces(self) -> Iterator[Piece]:
-        return stream(self.header, self._q + self._warm, self._texts)
+        return stream(self.header, self._numbers, self._texts)
 
     def _measured(self, piece: Piece) -> pl.DataFrame:
         q_rad = self._angles(piece)
         probe = self._probes(piece)
-        warmth_k = self._warmth_k(piece)
-        p_mm = self.arm.core.tip(q_rad, probe, warmth_k)
+        conditions = self._conditions(piece)
+        p_mm = self.arm.core.tip(q_rad, probe, **conditions)
         values = [p_mm / MM_PER[self.unit]]
         if self._uncertainty is not None:
             c_mm2 = np.empty((len(p_mm), 6))
             for k in np.unique(probe):
                 rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
-                warmth = None if warmth_k is None else np.ascontiguousarray(warmth_k[rows])
-                c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), warmth)
+                at = some_of(conditions, rows)
+                c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), at)
             values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
             if self._covariance:
                 values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
@@ -144,26 +149,37 @@ class MeasureJob:
         self._outside.add(q_rad, row)
         return q_rad
 
-    def _warmth_k(self, piece: Piece) -> F64 | None:
-        temperature_c = piece.numbers[:, self.arm.n :]
-        if temperature_c.shape[1] == 1:
-            temperature_c = temperature_c[:, 0]
-        return self.arm.warmth_k(temperature_c if self._warm else self._temperature_c, len(piece))
+    def _conditions(self, piece: Piece) -> Conditions:
+        """Raises UlnaInputError for a cell that says what cannot be."""
+        said: dict[str, Any] = dict(self._given)
+        row = np.arange(piece.before + 1, piece.before + 1 + len(piece))
+        for condition, columns in self._columns.items():
+            at = self._numbers.index(columns[0])
+            values = np.ascontiguousarray(piece.numbers[:, at : at + len(columns)])
+            check_values(values, columns, condition, self.header, row)
+            said[condition.said] = values[:, 0] if columns == [condition.name] else values
+        return self.arm.conditions(len(piece), **said)
 
-    def _temperatures(self, remarks: list[str]) -> list[str]:
-        """The columns that say how warm it was, where that matters. Raises UlnaInputError where nothing says it."""
-        if "link-expansion" not in self.arm.extras:
-            if self._temperature_c is not None:
-                remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
-            return []
-        found = temperature_columns(self.header, self.arm.n)
-        if not found and self._temperature_c is None:
-            raise UlnaInputError(
-                f"{self.header.path}: no column 'temperature', but the links of arm '{self.arm.name}' grow with it; "
-                "expected °C, of each reading or of all. Add the column, or give --temperature."
-            )
-        if found and self._temperature_c is not None:
-            remarks.append(f"{self.header.path}: the temperature given for all is not used: the file has its own.")
+    def _needed(self, remarks: list[str]) -> dict[Condition, list[str]]:
+        """The columns that say what points depend on beside angles. Raises UlnaInputError where nothing says it."""
+        found: dict[Condition, list[str]] = {}
+        if self._given["temperature_c"] is not None and TEMPERATURE not in self.arm.needs:
+            remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
+        for condition, effect in self.arm.needs.items():
+            columns = columns_of(condition, condition.name, self.header.columns, self.arm.n)
+            given = self._given.get(condition.said)
+            if not columns and given is None:
+                raise UlnaInputError(
+                    f"{self.header.path}: no column '{condition.name}{'' if condition.common else 1}', but the "
+                    f"{effect.whose} of arm '{self.arm.name}' {effect.does}; expected {condition.columns}. Add it"
+                    f"{f', or give {condition.option} for all' if condition.option else ''}."
+                )
+            if columns and given is not None:
+                remarks.append(
+                    f"{self.header.path}: the {condition.name} given for all is not used: the file has its own."
+                )
+            if columns:
+                found[condition] = columns
         return found
 
     def _probes(self, piece: Piece) -> int | NDArray[np.int64]:

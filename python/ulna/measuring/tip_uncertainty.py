@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import NOTHING, Conditions, some_of
 from ulna.arm.directions import steps, worth_naming
 from ulna.work.cores import available_cores
 
@@ -50,43 +51,43 @@ class TipUncertainty:
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 
-    def of(self, q_rad: F64, probe: int, warmth_k: F64 | None = None) -> F64:
+    def of(self, q_rad: F64, probe: int, conditions: Conditions = NOTHING) -> F64:
         """(N, n) → (N, 3) standard uncertainties, mm; NaN as for `covariance`."""
-        u_mm: F64 = np.sqrt(np.maximum(self.covariance(q_rad, probe, warmth_k)[:, DIAGONAL], 0.0))
+        u_mm: F64 = np.sqrt(np.maximum(self.covariance(q_rad, probe, conditions)[:, DIAGONAL], 0.0))
         return u_mm
 
-    def covariance(self, q_rad: F64, probe: int, warmth_k: F64 | None = None) -> F64:
+    def covariance(self, q_rad: F64, probe: int, conditions: Conditions = NOTHING) -> F64:
         """(N, n) → (N, 6) mm²: xx, xy, xz, yy, yz, zz of the tip's covariance matrix.
 
-        NaN where the tip depends on what was not determined. warmth_k: as `Arm.warmth_k`.
+        NaN where the tip depends on what was not determined. conditions: as `Arm.conditions`.
         """
         if not self._estimated:
             return np.full((len(q_rad), 6), np.nan)
 
         def block(start: int) -> F64:
             rows = slice(start, start + _BLOCK_ROWS)
-            return self._block(q_rad[rows], probe, None if warmth_k is None else warmth_k[rows])
+            return self._block(q_rad[rows], probe, some_of(conditions, rows))
 
         found = np.concatenate([np.empty((0, 6)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
         if self._lost:
-            moved = self._effect_mm(q_rad, probe, warmth_k, self._directions) > MOVES_MM
+            moved = self._effect_mm(q_rad, probe, conditions, self._directions) > MOVES_MM
             if moved.any():
                 found[moved] = np.nan
-                self._tell_which(q_rad[moved], probe, None if warmth_k is None else warmth_k[moved])
+                self._tell_which(q_rad[moved], probe, some_of(conditions, moved))
         return found
 
-    def _block(self, q_rad: F64, probe: int, warmth_k: F64 | None) -> F64:
+    def _block(self, q_rad: F64, probe: int, conditions: Conditions) -> F64:
         parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
-        return self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], warmth_k)
+        return self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], **conditions)
 
-    def _effect_mm(self, q_rad: F64, probe: int, warmth_k: F64 | None, directions: F64) -> F64:
-        return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, warmth_k)
+    def _effect_mm(self, q_rad: F64, probe: int, conditions: Conditions, directions: F64) -> F64:
+        return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, **conditions)
 
-    def _tell_which(self, q_rad: F64, probe: int, warmth_k: F64 | None) -> None:
+    def _tell_which(self, q_rad: F64, probe: int, conditions: Conditions) -> None:
         for row in range(len(self._lost)):
             if (row, probe) in self._told:
                 continue
-            if (self._effect_mm(q_rad, probe, warmth_k, self._directions[row : row + 1]) > MOVES_MM).any():
+            if (self._effect_mm(q_rad, probe, conditions, self._directions[row : row + 1]) > MOVES_MM).any():
                 self._told[row, probe] = None
 
     @property

@@ -129,7 +129,7 @@ def _few_places(
     if what.outward is not None:
         postures = ON_SURFACE * POSTURES
     points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
-    q_rad, reached = mover.on_points(points, np.full(len(points), probe), None, int(rng.integers(2**63)))
+    q_rad, reached = mover.on_points(points, np.full(len(points), probe), {}, int(rng.integers(2**63)))
     q_rad = q_rad.reshape(len(best), features, postures, -1)
     # a posture that was not found again gives way to one that was: they are all of one feature
     for k, j in zip(*np.nonzero(~reached.reshape(q_rad.shape[:3]).all(axis=2)), strict=True):

@@ -53,11 +53,7 @@ def check(arm: Arm, spec: PlanSpec) -> None:
             f"{spec.label}: one touch of one feature tells nothing, for its place is unknown; expected touches of 2 or "
             "more. Raise touches."
         )
-    if "link-expansion" in arm.extras:
-        raise UlnaInputError(
-            f"{spec.label}: the links of arm '{arm.name}' grow with temperature, which plans do not cover. Remove "
-            "expansion from the arm file."
-        )
+    arm.check_covered(spec.label, "plans")
     if spec.candidates < LEAST_CANDIDATES:
         raise UlnaInputError(
             f"{spec.label}: {spec.candidates} candidates; expected {LEAST_CANDIDATES} or more: of few places nobody "

@@ -67,10 +67,10 @@ def _placements(group: Readings, true: TrueTouching) -> Iterator[dict[str, Any]]
     """Where the artefact's origin is and how its axes (rows) stand in the base frame."""
     standings = true.standings
     origins_mm, axes = standings.origin_mm.tolist(), standings.axes.tolist()
-    temperatures_c = None if standings.temperature_c is None else standings.temperature_c.tolist()
+    of_places = {each.said: drawn.tolist() for each, drawn in standings.drawn.items() if drawn.ndim == 1}
     for k, (origin_mm, own) in enumerate(zip(origins_mm, axes, strict=True)):
         placement = {"artefact": group.artefact.name, "placement": str(k + 1), "origin_mm": origin_mm, "axes": own}
-        yield placement if temperatures_c is None else placement | {"temperature_c": temperatures_c[k]}
+        yield placement | {said: values[k] for said, values in of_places.items()}
 
 
 def _dimensions(stated: Artefact, true: Artefact) -> dict[str, Any]:

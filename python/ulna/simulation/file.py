@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import TEMPERATURE
 from ulna.arm.stated import encoder_of, one_per_joint, travel_of, volume_of
 from ulna.artefacts.kinds import KINDS, check_kinds, made
 from ulna.artefacts.tables import Place, TouchedTable
@@ -89,7 +90,7 @@ def _counted(file: SimulationFile, arm: Arm, path: Path) -> Arm:
 def _temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> Temperature | None:
     if table is None:
         return None
-    if "link-expansion" not in arm.extras:
+    if TEMPERATURE not in arm.needs:
         raise UlnaInputError(
             f"{path}: key 'temperature': nothing of arm '{arm.name}' grows with temperature; expected expansion (1/K) "
             "of its joints in the arm file. Add it, or remove the key."

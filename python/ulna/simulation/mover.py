@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions, some_of
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
 
@@ -49,11 +50,11 @@ class Mover:
         return rng.uniform(self.travel_rad[:, 0], self.travel_rad[:, 1], (count, self.arm.n))
 
     def on_points(
-        self, points_mm: F64, probe: I64, warmth_k: F64 | None, seed: int, tries: int = TRIES
+        self, points_mm: F64, probe: I64, conditions: Conditions, seed: int, tries: int = TRIES
     ) -> tuple[F64, Bool]:
         """(N, n) postures with the tip on (N, 3) points, elbow and wrist at random, and which points were reached.
 
-        probe (N,); warmth_k (N,): how much warmer than 20 °C the arm is; None where it does not matter.
+        probe (N,); conditions of the poses, as `Arm.conditions` gives them.
         tries: random elbows and wrists for a point.
         """
         q_rad, reached = np.zeros((len(points_mm), self.arm.n)), np.zeros(len(points_mm), dtype=bool)
@@ -61,21 +62,23 @@ class Mover:
             own = np.flatnonzero(probe == index)
             points = np.ascontiguousarray(points_mm[own])
             q_rad[own], reached[own] = self.arm.core.pose_for_points(points, self.travel_rad, seed, index, tries)
-            if warmth_k is not None:
+            if conditions:
                 there = own[reached[own]]
-                q_rad[there], reached[there] = self._warmed(q_rad[there], points_mm[there], index, warmth_k[there])
+                at = some_of(conditions, there)
+                q_rad[there], reached[there] = self._under(q_rad[there], points_mm[there], index, at)
         return q_rad, reached
 
-    def _warmed(self, q_rad: F64, points_mm: F64, probe: int, warmth_k: F64) -> tuple[F64, Bool]:
-        """The same postures of the warm arm: Newton's steps of least motion, joints at their ends staying there."""
+    def _under(self, q_rad: F64, points_mm: F64, probe: int, conditions: Conditions) -> tuple[F64, Bool]:
+        """The same postures under conditions: Newton's steps of least motion, joints at their ends staying there."""
         low, high = self.travel_rad.T
         core, q_rad = self.arm.core, q_rad.copy()
-        miss_mm = points_mm - core.tip(q_rad, probe, warmth_k)
+        miss_mm = points_mm - core.tip(q_rad, probe, **conditions)
         for _ in range(STEPS):
             rest = np.flatnonzero(np.linalg.norm(miss_mm, axis=1) > REACHED_MM / 4)
             if not len(rest):
                 break
-            jacobian = core.encoder_jacobian(np.ascontiguousarray(q_rad[rest]), probe, warmth_k[rest])
+            at = some_of(conditions, rest)
+            jacobian = core.encoder_jacobian(np.ascontiguousarray(q_rad[rest]), probe, **at)
             free = (q_rad[rest] > low) & (q_rad[rest] < high)
             jacobian = jacobian * free[:, None, :]
             back = jacobian.transpose(0, 2, 1)
@@ -84,7 +87,7 @@ class Mover:
             square += 1e-12 * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(3) + 1e-12 * np.eye(3)
             step = (back @ np.linalg.solve(square, miss_mm[rest][..., None]))[..., 0]
             q_rad[rest] = np.clip(q_rad[rest] + np.clip(step, -0.1, 0.1), low, high)
-            miss_mm[rest] = points_mm[rest] - core.tip(np.ascontiguousarray(q_rad[rest]), probe, warmth_k[rest])
+            miss_mm[rest] = points_mm[rest] - core.tip(np.ascontiguousarray(q_rad[rest]), probe, **at)
         return q_rad, np.linalg.norm(miss_mm, axis=1) <= REACHED_MM
 
     @cached_property
@@ -110,10 +113,9 @@ class Survey:
     def of(cls, mover: Mover, probe: int) -> Survey:
         """From random poses at 20 °C, always the same."""
         q_rad = mover.anywhere(SURVEYED, np.random.default_rng(0))
-        warmth_k = np.zeros(SURVEYED) if "link-expansion" in mover.arm.extras else None
         cell_mm = mover.arm.core.reach_mm(probe) / CELLS
         survey = cls(cell_mm, np.zeros((2 * CELLS + 2,) * 3, dtype=bool))
-        survey.seen[survey._cells(mover.arm.core.tip(q_rad, probe, warmth_k))] = True
+        survey.seen[survey._cells(mover.arm.core.tip(q_rad, probe))] = True
         return survey
 
     def holds(self, points_mm: F64) -> Bool:

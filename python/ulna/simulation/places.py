@@ -37,11 +37,11 @@ def places(
     count: int,
     postures: int,
     rng: np.random.Generator,
-    warmer_k: float | None = None,
+    temperature_c: float | None = None,
 ) -> tuple[F64, F64]:
     """(count, K, 3) places and directions at random within reach and box, (count, K, postures, n) postures there.
 
-    warmer_k: than 20 °C, for arms that grow. Raises UlnaInputError where none are found.
+    temperature_c: of the arm, where it matters. Raises UlnaInputError where none are found.
     """
     at: list[F64] = []
     poses: list[F64] = []
@@ -50,9 +50,9 @@ def places(
     while missing and barren < BARREN:
         placed_mm = features_mm[None] if standing.fixed else _near(standing, mover, probe, missing, rng)
         points_mm = np.repeat(placed_mm.reshape(-1, 3), postures, axis=0)
-        warmth_k = None if warmer_k is None else np.full(len(points_mm), warmer_k)
+        conditions = mover.arm.conditions(len(points_mm), temperature_c)
         seed = int(rng.integers(2**63))
-        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), warmth_k, seed)
+        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), conditions, seed)
         shape = (len(placed_mm), len(features_mm), postures)
         whole = np.flatnonzero(reached.reshape(shape).all(axis=(1, 2)))
         at.append(placed_mm[whole])
@@ -71,11 +71,7 @@ def _near(standing: Standing, mover: Mover, probe: int, most: int, rng: np.rando
     """At most so many places at which all points seem to be within reach."""
     drawn = 8 * most + 200
     features_mm, box = standing.features_mm, standing.box_mm
-    if box is None:
-        warmth_k = np.zeros(drawn) if "link-expansion" in mover.arm.extras else None
-        first_mm = mover.arm.core.tip(mover.anywhere(drawn, rng), probe, warmth_k)
-    else:
-        first_mm = rng.uniform(*box, (drawn, 3))
+    first_mm = _firsts(box, mover, probe, drawn, rng)
     at_mm = first_mm[:, None] + (features_mm - features_mm[0]) @ turns(features_mm, drawn, rng)
     good = np.ones(drawn, dtype=bool)
     for k in range(len(features_mm)):
@@ -84,3 +80,10 @@ def _near(standing: Standing, mover: Mover, probe: int, most: int, rng: np.rando
             good &= ((at_mm[:, k] >= box[0]) & (at_mm[:, k] <= box[1])).all(axis=1)
     kept: F64 = at_mm[good][:most]
     return kept
+
+
+def _firsts(box: Box | None, mover: Mover, probe: int, count: int, rng: np.random.Generator) -> F64:
+    """(count, 3) where the first point is: in the box, or wherever the tip can be."""
+    if box is not None:
+        return rng.uniform(*box, (count, 3))
+    return mover.arm.core.tip(mover.anywhere(count, rng), probe)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.effects.effects import Effects
+from ulna.arm.effects.effects import without
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kind import Touches
 from ulna.artefacts.kinds import kind_of
@@ -97,10 +97,7 @@ def drawn(simulation: Simulation) -> Arm:
     if drawing is None:
         return replace(arm, uncertainty=None)
     if not drawing.effects:
-        joints = [
-            replace(joint, effects=Effects(mass_kg=joint.effects.mass_kg, centre_mm=joint.effects.centre_mm))
-            for joint in arm.joints
-        ]
+        joints = [replace(joint, effects=without(joint.effects)) for joint in arm.joints]
         arm = replace(arm, joints=tuple(joints))
     rng = np.random.default_rng([simulation.seed, 0, 3])
     return as_drawn(arm, rng, drawing.offset_rad, drawing.length_mm, drawing.twist_rad)
@@ -148,7 +145,6 @@ def _readings(
     measured_mm = kind.measured_mm(touching.artefact, true, touches, places, rng)
     of_row = slice(None, None, kind.poses)
     labels = np.arange(1, places + 1).astype(str).astype(object)
-    temperature_c = standings.temperature_c
     return Readings(
         artefact=touching.artefact,
         q_rad=np.ascontiguousarray(read_rad[:, of_row].reshape(rows, n)),
@@ -159,5 +155,15 @@ def _readings(
         placement=np.repeat(labels, rows // places),
         row=np.arange(1, rows + 1),
         file=np.zeros(rows, np.int64),
-        temperature_c=None if temperature_c is None else np.repeat(temperature_c, rows // places),
+        **_said(standings, per, kind.poses),
     )
+
+
+def _said(standings: Standings, per: int, poses: int) -> dict[str, Any]:
+    """What the readings say of conditions, by their fields; per: touches of a placement."""
+    said: dict[str, Any] = {}
+    for condition, drawn in standings.drawn.items():
+        each = condition.of_touches(drawn, per)
+        for pose, name in enumerate(list(condition.fields.values())[:poses]):
+            said[name] = np.ascontiguousarray(each[pose::poses])
+    return said

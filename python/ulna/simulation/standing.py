@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ulna.arm.effects.effects import REFERENCE_C
+from ulna.arm.conditions import CONDITIONS, TEMPERATURE, Condition
 from ulna.artefacts.kind import Touches
 from ulna.ground.arrays import F64, I64, Bool, Progress
 from ulna.ground.errors import UlnaInputError
@@ -28,8 +28,8 @@ class Standings:
     """(P, 3) where the artefact's origin is, base frame."""
     axes: F64
     """(P, 3, 3) its x, y and z axis as rows, base frame."""
-    temperature_c: F64 | None
-    """(P,) of the arm."""
+    drawn: dict[Condition, F64]
+    """(P, …) what the arm's tip depends on beside its angles, as people say it."""
     q_rad: F64
     """(P, T, n) true encoder angles."""
     missed: Bool
@@ -87,8 +87,7 @@ def _candidates(
     probe = int(touches.probe[0])
     if simulation.volume_mm is None:
         q_rad = mover.anywhere(drawn, rng)
-        warmth_k = np.zeros(drawn) if "link-expansion" in mover.arm.extras else None
-        first_mm = mover.arm.core.tip(q_rad, probe, warmth_k)
+        first_mm = mover.arm.core.tip(q_rad, probe)
     else:
         first_mm = rng.uniform(*simulation.volume_mm, (drawn, 3))
     axes = turns(np.eye(3), drawn, rng)
@@ -111,17 +110,17 @@ def _touch(
     places, per = len(origin_mm), len(touches.probe)
     noise_mm = simulation.seat_mm * rng.standard_normal((places, per, 3))
     missed, off_mm = _missed(simulation, touches, axes, rng)
-    temperature_c = warmth_k = None
-    if "link-expansion" in mover.arm.extras:
-        temperature = simulation.temperature
-        temperature_c = np.full(places, REFERENCE_C)
-        if temperature is not None:
-            temperature_c = temperature.mean_c + temperature.spread_c * rng.standard_normal(places)
-        warmth_k = np.repeat(temperature_c - REFERENCE_C, per)
+    arm, warm = mover.arm, simulation.temperature
+    stated: dict[Condition, tuple[float, float]] = {}
+    if warm is not None:
+        stated[TEMPERATURE] = (warm.mean_c, warm.spread_c)
+    drawn = {each: each.drawn(places, per, arm.n, stated.get(each), rng) for each in CONDITIONS if each in arm.needs}
+    said = {each.said: each.of_touches(values, per) for each, values in drawn.items()}
+    conditions = arm.conditions(places * per, **said)
     at_mm = origin_mm[:, None] + touches.centre_mm @ axes + noise_mm + off_mm
     seed = int(rng.integers(2**63))
-    q_rad, reached = mover.on_points(at_mm.reshape(-1, 3), np.tile(touches.probe, places), warmth_k, seed)
-    touched = Standings(origin_mm, axes, temperature_c, q_rad.reshape(places, per, -1), missed, off_mm)
+    q_rad, reached = mover.on_points(at_mm.reshape(-1, 3), np.tile(touches.probe, places), conditions, seed)
+    touched = Standings(origin_mm, axes, drawn, q_rad.reshape(places, per, -1), missed, off_mm)
     return touched, reached.reshape(places, per)
 
 
@@ -150,11 +149,10 @@ def _beyond_reach(simulation: Simulation, touching: Touching, touches: Touches, 
 
 
 def _select(standings: Standings, places: I64) -> Standings:
-    temperature_c = None if standings.temperature_c is None else standings.temperature_c[places]
     return Standings(
         standings.origin_mm[places],
         standings.axes[places],
-        temperature_c,
+        {each: values[places] for each, values in standings.drawn.items()},
         standings.q_rad[places],
         standings.missed[places],
         standings.off_mm[places],
@@ -168,7 +166,7 @@ def _joined(parts: list[Standings]) -> Standings:
     return Standings(
         of("origin_mm"),
         of("axes"),
-        None if parts[0].temperature_c is None else of("temperature_c"),
+        {each: np.concatenate([part.drawn[each] for part in parts]) for each in parts[0].drawn},
         of("q_rad"),
         np.concatenate([part.missed for part in parts]),
         of("off_mm"),

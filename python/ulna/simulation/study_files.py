@@ -88,8 +88,12 @@ def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> 
     measured = kind_of(group.artefact).measured_column
     if measured is not None and group.artefact.length_mm is None and group.length_mm is not None:
         columns[measured] = group.length_mm
-    if group.temperature_c is not None:
-        columns["temperature"] = group.temperature_c
+    for condition, name, said in group.conditions():
+        numbers = said if condition.allowed is None else said.astype(np.int64)
+        if said.ndim == 1:
+            columns[name] = numbers
+        else:
+            columns |= {f"{name}{k + 1}": numbers[:, k] for k in range(said.shape[1])}
     return pl.DataFrame(columns)
 
 

@@ -27,7 +27,7 @@ class VirtualArm(Mover):
         Raises ValueError for points out of reach.
         """
         beside = points_mm + self.errors.seat_mm * rng.standard_normal(points_mm.shape)
-        q_rad, reached = self.on_points(beside, np.zeros(len(beside), dtype=np.int64), None, seed, PATIENT)
+        q_rad, reached = self.on_points(beside, np.zeros(len(beside), dtype=np.int64), {}, seed, PATIENT)
         if not reached.all():
             raise ValueError(f"{int((~reached).sum())} of {len(reached)} points are out of the virtual arm's reach")
         return self.errors.read(q_rad, rng)

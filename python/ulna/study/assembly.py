@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, Bool
@@ -43,8 +44,8 @@ def assemble(study: StudyData, hold: Callable[[list[str]], Bool] | None = None) 
     try:
         problem = _core.Problem(arm.core, noise.encoder_rad, noise.seat_mm)
         for group in study.readings:
-            balls, warmth = balls_mm(study, arm, group), warmth_k(study, arm, group)
-            kind_of(group.artefact).enter(problem, group, balls, warmth)
+            balls, conditions = balls_mm(study, arm, group), conditions_of(study, arm, group)
+            kind_of(group.artefact).enter(problem, group, balls, conditions)
         names, units = problem.parameter_names, problem.parameter_units
         mask = hold_mask(study, names) if hold is None else hold(names)
         for parameter, (value, u) in priors(study, names, units, problem.parameters.tolist(), mask).items():
@@ -55,18 +56,18 @@ def assemble(study: StudyData, hold: Callable[[list[str]], Bool] | None = None) 
     return Assembled(problem, arm, names, units, mask)
 
 
-def warmth_k(study: StudyData, arm: Arm, group: Readings) -> F64 | None:
-    """(N,) or (N, n): temperatures above 20 °C where the arm's links grow with them. Raises UlnaInputError where one is
-    missing."""
-    try:
-        return arm.warmth_k(group.temperature_c, len(group))
-    except UlnaInputError:
-        path = study.files[int(group.file[0])].path if study.files else "in memory"
-        raise UlnaInputError(
-            f"{study.label}: artefact '{group.artefact.name}': the links of arm '{arm.name}' grow with temperature, "
-            f"but its readings ({path}) do not all say how warm it was; expected a column temperature, °C, or one for "
-            "each joint. Add it, or leave 'link-expansion' out."
-        ) from None
+def conditions_of(study: StudyData, arm: Arm, group: Readings) -> list[Conditions]:
+    """Of each pose of a row: what the arm's tip depends on beside the angles. Raises UlnaInputError where the readings
+    do not say it."""
+    for condition, effect in arm.needs.items():
+        if not all(condition.known(said[condition.said]) for said in group.said):
+            path = study.files[int(group.file[0])].path if study.files else "in memory"
+            raise UlnaInputError(
+                f"{study.label}: artefact '{group.artefact.name}': the {effect.whose} of arm '{arm.name}' "
+                f"{effect.does}, but its readings ({path}) {condition.unsaid}; expected {condition.columns}. Add it, "
+                f"or leave '{effect.name}' out."
+            )
+    return [arm.conditions(len(group), **said) for said in group.said]
 
 
 def balls_mm(study: StudyData, arm: Arm, group: Readings) -> F64:

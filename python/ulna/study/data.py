@@ -59,7 +59,7 @@ class FitOptions:
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
     extras: list[str] = field(default_factory=list)
-    """Blocks of the model beyond geometry: "encoder-harmonics", "link-expansion", "compliance"."""
+    """Blocks of the model beyond geometry, by their names in `ulna.arm.effects`."""
     harmonics: list[int] = field(default_factory=lambda: [1, 2])
     """Orders of the encoders' harmonics, where extras ask for them."""
     prior: dict[str, Prior] = field(default_factory=dict)

@@ -9,25 +9,18 @@ from dataclasses import replace
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.effects.effects import extra_of, with_extras
+from ulna.arm.effects.effect import Effect
+from ulna.arm.effects.effects import EFFECTS, effect_named, extra_of, with_extras
 from ulna.ground.arrays import Bool
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.study.data import StudyData
-
-HARMONICS_U_RAD = 5e-4
-"""The prior of every amplitude of an encoder's harmonics where the study gives none: over a short travel they would
-otherwise imitate zero offsets, and each other. Ten times what a good encoder shows, and what robots show."""
 
 
 def start_arm(study: StudyData) -> Arm:
     """The study's arm with zero of the blocks that are asked for beyond what it has. Raises UlnaInputError."""
     arm, extras = study.arm, study.fit.extras
-    if "compliance" in extras and not any(joint.effects.mass_kg for joint in arm.joints):
-        raise UlnaInputError(
-            f"{study.label}: key 'fit.extras': 'compliance' is how joints give way to the weight of the links, but no "
-            f"joint of arm '{arm.name}' has a mass; expected mass (kg) and centre in the arm file's joint tables. Add "
-            "them: rough ones will do, the compliance takes their scale."
-        )
+    for extra in extras:
+        effect_named(extra).check_asked([joint.effects for joint in arm.joints], arm.name, study.label)
     if not extras:
         return arm
     joints = [replace(joint, effects=with_extras(joint.effects, extras, study.fit.harmonics)) for joint in arm.joints]
@@ -52,7 +45,7 @@ def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> 
     """(parameters,) true where the name matches. Raises UlnaInputError where none does."""
     hits = np.array([fnmatch.fnmatchcase(name, pattern) for name in names], dtype=bool)
     if not hits.any():
-        off = next((extra for name, extra in _OF_EXTRAS.items() if fnmatch.fnmatchcase(name, pattern)), None)
+        off = next((effect.name for effect in EFFECTS.values() if _is_of(effect, pattern)), None)
         hint = f" Is '{off}' missing in fit.extras?" if off is not None else nearest(pattern, names)
         raise UlnaInputError(
             f"{study.label}: key '{key}': the pattern '{pattern}' matches no parameter of arm '{study.arm.name}'; "
@@ -61,16 +54,10 @@ def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> 
     return hits
 
 
-_OF_EXTRAS = {
-    **{
-        f"joint.{joint}.{part}{order}": "encoder-harmonics"
-        for joint in range(1, 13)
-        for part in "cs"
-        for order in (1, 2)
-    },
-    **{f"joint.{joint}.expansion": "link-expansion" for joint in range(1, 13)},
-    **{f"joint.{joint}.compliance": "compliance" for joint in range(1, 13)},
-}
+def _is_of(effect: Effect, pattern: str) -> bool:
+    """Whether it asks for parameters of an effect."""
+    names = (f"joint.{joint}.{example}" for joint in range(1, 13) for example in effect.examples)
+    return any(fnmatch.fnmatchcase(name, pattern) for name in names)
 
 
 def priors(
@@ -79,8 +66,10 @@ def priors(
     """Parameter number → (value, standard deviation), of free parameters. Raises UlnaInputError for a vain pattern."""
     found: dict[int, tuple[float, float]] = {}
     for k, name in enumerate(names):
-        if extra_of(name) == "encoder-harmonics" and not hold[k]:
-            found[k] = (values[k], HARMONICS_U_RAD)
+        extra = extra_of(name)
+        u_before = None if extra is None else EFFECTS[extra].prior_u
+        if u_before is not None and not hold[k]:
+            found[k] = (values[k], u_before)
     for pattern, prior in study.fit.prior.items():
         for k in np.flatnonzero(matching(study, pattern, names, "fit.prior")).tolist():
             if not hold[k]:

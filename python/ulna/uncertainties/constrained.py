@@ -57,11 +57,7 @@ class Constrained:
         progress: Progress | None = None,
     ) -> None:
         """Raises UlnaInputError for patterns that hold nothing or all, and for tests or arms that cannot be."""
-        if "link-expansion" in arm.extras:
-            raise UlnaInputError(
-                f"{performance.label}: the links of arm '{arm.name}' grow with temperature, which performance files do "
-                "not cover. Remove expansion from the arm file."
-            )
+        arm.check_covered(performance.label, "performance files")
         self.performance = performance
         self._workers = workers or Threads()
         self._told = progress if progress is not None else lambda *_: None

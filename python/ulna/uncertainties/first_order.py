@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.directions import DRAWN, steps, unit_of
+from ulna.arm.directions import drawn, steps
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.measuring.tip_uncertainty import MOVES_MM
@@ -60,11 +60,11 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
             "Correct the readings."
         )
     gradient = _gradient(task, tips_mm)
-    by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, task.temperature_c))
+    by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, **task.said()))
     sources = {"parameters": propagate(by_parameter, known.over(arm.parameter_names))}
     if task.encoder_rad is not None:
-        warmth = arm.warmth_k(task.temperature_c, len(tips_mm))
-        by_angle = arm.core.encoder_jacobian(task.q_rad, arm.probe_index(task.probe), warmth)
+        conditions = arm.conditions(len(tips_mm), **task.said())
+        by_angle = arm.core.encoder_jacobian(task.q_rad, arm.probe_index(task.probe), **conditions)
         by_encoder = np.einsum("mnj,nji->mni", gradient, by_angle).reshape(len(gradient), -1)
         sources["encoders"] = propagate(by_encoder, np.diag(np.tile(task.encoder_rad**2, len(tips_mm))))
     if task.seat_mm is not None:
@@ -119,5 +119,5 @@ def _exact(arm: Arm, by_parameter: F64, moves: F64) -> list[str]:
     assert known is not None
     matters = (np.abs(by_parameter) / moves[:, None]).max(axis=0)
     names = [name for name in arm.parameter_names if name not in known.names]
-    size = {name: matters[arm.parameter_names.index(name)] * DRAWN[unit_of(name)] for name in names}
+    size = {name: matters[arm.parameter_names.index(name)] * drawn(name) for name in names}
     return [name for name in names if size[name] > 1.0]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.effects.effects import EFFECTS
 from ulna.ground.arrays import F64
 
 
@@ -17,14 +19,10 @@ def left_out(
         left.append("the encoders' noise while measuring: nobody stated it")
     if seat_mm is None:
         left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
-    if "link-expansion" not in arm.extras:
-        left.append("links that grow with temperature: the arm's model has none")
-    elif not u_temperature_k:
+    if TEMPERATURE in arm.needs and not u_temperature_k:
         left.append("the uncertainty of the temperature: nobody stated it")
-    if "encoder-harmonics" not in arm.extras:
-        left.append("eccentric encoders: the arm's model has none")
-    if "compliance" not in arm.extras:
-        left.append("joints that give way under load: the arm's model has none")
+    absent = [effect for effect in EFFECTS.values() if effect not in arm.effects]
+    left += [f"{effect.left_out}: the arm's model has none" for effect in absent]
     left.append("the form and the temperature of what is measured")
     left.append("errors of the calibration's artefact beyond the u that its study states")
     return left

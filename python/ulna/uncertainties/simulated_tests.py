@@ -125,7 +125,7 @@ def _seat(mover: Mover, probe: int, part: float, touches: int, label: str, rng: 
     distance = np.linalg.norm(at_mm, axis=1) / reach_mm
     for point in at_mm[np.abs(distance - part) < NEAR][:TRIED]:
         points = np.ascontiguousarray(np.tile(point, (touches, 1)))
-        q_rad, reached = mover.on_points(points, np.full(touches, probe), None, int(rng.integers(2**63)))
+        q_rad, reached = mover.on_points(points, np.full(touches, probe), {}, int(rng.integers(2**63)))
         if reached.all():
             return q_rad
     raise UlnaInputError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,8 @@ class Task:
     """Standard deviation of a touch per coordinate; None: not known."""
     temperature_c: float | None = None
     """Of the links, where they grow with it."""
+    approach: F64 | None = None
+    """(N, n) from which side joints were approached, where that matters."""
     u_temperature_k: float = 0.0
     """Standard uncertainty of that, the same for all touches."""
     inside: bool = False
@@ -45,8 +48,12 @@ class Task:
 
     def tips_mm(self, arm: Arm, q_rad: F64, warmer_k: float = 0.0) -> F64:
         """(N, 3) tips at (N, n) encoder angles, links warmer than stated by so much."""
+        return arm.tip(q_rad, self.probe, **self.said(warmer_k))
+
+    def said(self, warmer_k: float = 0.0) -> dict[str, Any]:
+        """What `Arm.tip` asks for beside angles and probe, links warmer than stated by so much."""
         warm = None if self.temperature_c is None else self.temperature_c + warmer_k
-        return arm.tip(q_rad, self.probe, warm)
+        return {"temperature_c": warm, "approach": self.approach}
 
     def values(self, arm: Arm, tips_mm: F64) -> F64:
         """(T, N, 3) tips → (T, values): the measurand's, of a ball with the probe's own taken off."""
@@ -67,14 +74,11 @@ class Task:
         count, poses = len(parameters), len(self.q_rad)
         noise = self._noise(first, count, seed)
         core, probe = arm.core, arm.probe_index(self.probe)
-        grows = "link-expansion" in arm.extras
         tips = np.empty((count, poses, 3))
         q_rad = self.q_rad + noise[:, :, : arm.n] * (0.0 if self.encoder_rad is None else self.encoder_rad)
         for k in range(count):
-            warmth = None
-            if grows:
-                warmth = arm.warmth_k((self.temperature_c or 0.0) + self.u_temperature_k * noise[k, 0, -1], poses)
-            tips[k] = core.with_parameters(parameters[k]).tip(q_rad[k], probe, warmth)
+            at = arm.conditions(poses, **self.said(self.u_temperature_k * noise[k, 0, -1]))
+            tips[k] = core.with_parameters(parameters[k]).tip(q_rad[k], probe, **at)
         tips += (self.seat_mm or 0.0) * noise[:, :, arm.n : arm.n + 3]
         return self.values(arm, tips)
 

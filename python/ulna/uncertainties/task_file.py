@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import APPROACH, TEMPERATURE
 from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.models import Strict, fill
 from ulna.formats.numbers import Coverage, Uncertainty
@@ -21,6 +22,7 @@ from ulna.study.data import Noise
 from ulna.study.file import noise_of_table
 from ulna.study.readings.checks import check_scale
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
+from ulna.study.readings.conditions import said_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.study.tables import NoiseTable
@@ -83,14 +85,17 @@ class StatedTask:
     feature: I64
     """(N,) index into the features of the kind."""
     noise: Noise | None
+    approach: F64 | None = None
+    """(N, n) where the file says it."""
 
 
 def check_temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> None:
-    """Raises UlnaInputError where the arm grows with its temperature and none is stated."""
-    if "link-expansion" in arm.extras and table is None:
+    """Raises UlnaInputError where the arm's tip depends on its temperature and none is stated."""
+    effect = arm.needs.get(TEMPERATURE)
+    if effect is not None and table is None:
         raise UlnaInputError(
-            f"{path}: [temperature] is missing, but the links of arm '{arm.name}' grow with it; expected value (°C) "
-            "and u (K). Add it."
+            f"{path}: [temperature] is missing, but the {effect.whose} of arm '{arm.name}' {effect.does}; expected "
+            "value (°C) and u (K). Add it."
         )
 
 
@@ -132,4 +137,11 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
         )
     feature = codes(frame, header, source, "feature", features[file.kind], f"a {file.kind}", row)
     noise = noise_of_table(file.noise, file.units, arm, path)
-    return StatedTask(path, file, q_rad, int(probe[0]), each_row(feature, len(row)), noise)
+    approach = said_of(frame, arm.n, header, row).get("approach")
+    effect = arm.needs.get(APPROACH)
+    if effect is not None and approach is None:
+        raise UlnaInputError(
+            f"{source_file}: the {effect.whose} of arm '{arm.name}' {effect.does}, but the readings {APPROACH.unsaid}; "
+            f"expected {APPROACH.columns}. Add them."
+        )
+    return StatedTask(path, file, q_rad, int(probe[0]), each_row(feature, len(row)), noise, approach)

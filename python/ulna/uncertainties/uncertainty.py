@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ulna.arm.conditions import TEMPERATURE
 from ulna.calibration.recalibrations import job_of
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError
@@ -82,7 +83,8 @@ def uncertainty(
             encoder_rad=encoder_rad,
             seat_mm=seat_mm,
             temperature_c=None if warm is None else warm.value,
-            u_temperature_k=0.0 if warm is None or "link-expansion" not in arm.extras else warm.u,
+            approach=stated.approach,
+            u_temperature_k=0.0 if warm is None or TEMPERATURE not in arm.needs else warm.u,
             inside=stated.file.inside,
             degrees_of_freedom=known.degrees_of_freedom,
             p=stated.file.p,
@@ -125,7 +127,7 @@ def volume_uncertainty(
         bars=stated.file.bars,
         box_mm=stated.box_mm,
         temperature_c=None if warm is None else warm.value,
-        u_temperature_k=0.0 if warm is None or "link-expansion" not in known.arm.extras else warm.u,
+        u_temperature_k=0.0 if warm is None or TEMPERATURE not in known.arm.needs else warm.u,
         degrees_of_freedom=known.degrees_of_freedom,
         p=stated.file.p,
     )

@@ -10,8 +10,8 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from ulna.arm.arm import Arm
-from ulna.arm.directions import DRAWN, steps, unit_of
-from ulna.arm.effects.effects import REFERENCE_C
+from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.directions import drawn, steps
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
@@ -54,11 +54,6 @@ class VolumeTask:
     """Of the parameters' covariance."""
     p: float = 0.95
 
-    @property
-    def warmer_k(self) -> float | None:
-        """Than 20 °C."""
-        return None if self.temperature_c is None else self.temperature_c - REFERENCE_C
-
 
 @dataclass(frozen=True)
 class Somewhere:
@@ -100,6 +95,7 @@ def volume_map(arm: Arm, task: VolumeTask, seed: int = 0, progress: Progress | N
     `arm.uncertainty` must be set. Raises UlnaInputError where no place is found, or no uncertainty is known.
     """
     check_known(arm)
+    arm.check_covered(task.label, "volume files", (TEMPERATURE,))
     told = progress if progress is not None else lambda *_: None
     mover, probe = Mover(arm, task.travel_rad), arm.probe_index(task.probe)
     reach_mm = arm.core.reach_mm(probe)
@@ -115,7 +111,7 @@ def volume_map(arm: Arm, task: VolumeTask, seed: int = 0, progress: Progress | N
     for length_mm in lengths_mm:
         ends_mm = np.array([[0.0, 0.0, 0.0], [length_mm, 0.0, 0.0]])
         bar = Standing(ends_mm, f"{task.label}: length {length_mm:g} mm", box_mm=task.box_mm)
-        stands_mm, poses = places(bar, mover, probe, task.bars, 1, rng, task.warmer_k)
+        stands_mm, poses = places(bar, mover, probe, task.bars, 1, rng, task.temperature_c)
         u_mm, expanded_mm = account.of_lengths(np.ascontiguousarray(poses[:, :, 0]))
         lengths[length_mm] = Somewhere(stands_mm.mean(axis=1), u_mm, expanded_mm)
         told("places", 1 + len(lengths), total)
@@ -144,9 +140,9 @@ def _points(arm: Arm, task: VolumeTask, mover: Mover, probe: int, rng: np.random
     while found < task.points and rounds < 200:
         points_mm = rng.uniform(low, high, (4 * task.points, 3))
         points_mm = np.ascontiguousarray(points_mm[mover.near_reach(points_mm, probe)][: task.points - found])
-        warmth_k = None if task.warmer_k is None else np.full(len(points_mm), task.warmer_k)
+        conditions = arm.conditions(len(points_mm), task.temperature_c)
         seed = int(rng.integers(2**63))
-        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), warmth_k, seed)
+        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), conditions, seed)
         at.append(points_mm[reached])
         poses.append(q_rad[reached])
         found += int(reached.sum())
@@ -175,7 +171,7 @@ class Account:
             for name, weight in weights.items():
                 self._directions[row, names.index(name)] = weight / max(steps(weights).values())
         self._held = [k for k, name in enumerate(names) if name not in known.names]
-        self._drawn = np.array([DRAWN[unit_of(names[k])] for k in self._held])
+        self._drawn = np.array([drawn(names[k]) for k in self._held])
         self._matters = np.zeros(len(self._held), dtype=bool)
         self.open: set[int] = set()
 
@@ -225,8 +221,8 @@ class Account:
             parameters[away.any(axis=2)] = np.nan
         others = np.zeros((count, values))
         if task.encoder_rad is not None:
-            warmth = arm.warmth_k(task.temperature_c, len(q_rad))
-            turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), warmth).reshape(count, each, 3, -1)
+            at = arm.conditions(len(q_rad), task.temperature_c)
+            turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), **at).reshape(count, each, 3, -1)
             others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.encoder_rad) ** 2).sum(axis=(2, 3))
         if task.seat_mm is not None:
             others += task.seat_mm**2 * (by_tip**2).sum(axis=(2, 3))

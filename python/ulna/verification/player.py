@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import NOTHING, REFERENCE_C
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
@@ -22,7 +23,6 @@ from ulna.verification.profile import Profile
 from ulna.verification.steps import artefacts_of, steps_of
 
 FIXTURE_MM = 0.001
-TEMPERATURE_C = 20.0
 #: of the sum of the links: what an arm's maker would call its reach
 REACHED = 0.8
 #: places tried at once, and how often
@@ -82,7 +82,7 @@ def play(
         range_mm=range_mm,
         artefacts=stated,
         mpe={key: limit for table in profile.file.test.values() for key, limit in kind_of(table.kind).limits.items()},
-        temperature={"value": TEMPERATURE_C, "u": 0.1},
+        temperature={"value": REFERENCE_C, "u": 0.1},
         fixture_mm=FIXTURE_MM,
     )
     return Played(filled, errors.read(np.concatenate(parts), rng), true_mm)
@@ -118,14 +118,13 @@ class _Player:
         local_mm = artefact.touched(steps, self.true_mm.get(artefact.name, 0.0), self.tip_mm)
         between = artefact.between(first.position)
         probe = np.zeros(len(steps) * PLACES, dtype=np.int64)
-        warmth_k = self.mover.arm.warmth_k(TEMPERATURE_C, len(probe))
         for _ in range(ROUNDS):
             axes = turns(np.eye(3), PLACES, self.rng)
             origin_mm = self._origins(between, local_mm, axes)
             at_mm = origin_mm[:, None] + local_mm @ axes
             at_mm += self.touch_mm * self.rng.standard_normal(at_mm.shape)
             flat = at_mm.reshape(-1, 3)
-            q_rad, reached = self.mover.on_points(flat, probe, warmth_k, int(self.rng.integers(2**63)))
+            q_rad, reached = self.mover.on_points(flat, probe, NOTHING, int(self.rng.integers(2**63)))
             whole = reached.reshape(PLACES, -1).all(axis=1)
             if whole.any():
                 return np.asarray(q_rad.reshape(PLACES, len(steps), -1)[int(np.argmax(whole))])
@@ -147,5 +146,4 @@ class _Player:
         return np.asarray(tips[np.argsort(np.maximum(away, 0.0), kind="stable")[:PLACES]])
 
     def _tips(self, q_rad: F64) -> F64:
-        warmth_k = self.mover.arm.warmth_k(TEMPERATURE_C, len(q_rad))
-        return np.asarray(self.mover.arm.core.tip(q_rad, 0, warmth_k))
+        return np.asarray(self.mover.arm.core.tip(q_rad, 0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import polars as pl
@@ -20,6 +20,7 @@ from ulna.ground.arrays import F64, I64, Texts
 from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.checks import check_scale, remark_limits
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
+from ulna.study.readings.conditions import is_condition, said_of
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.verification.tables import VerifyReadings
 
@@ -121,7 +122,7 @@ def read_touches(
     needed = [
         *_labels_of(header),
         *encoders,
-        *(c for c in header.columns if c == "probe" or c.startswith("temperature")),
+        *(c for c in header.columns if c == "probe" or is_condition(c)),
     ]
     frame = _filled(header, needed)
     row = np.arange(1, len(frame) + 1)
@@ -131,11 +132,12 @@ def read_touches(
     q_rad = angles(frame, "q", factors)
     check_scale(q_rad, "q", factors, entry.angle or setting.units.angle, header, row)
     probe = each_row(codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row), len(row))
-    warmth_k = arm.warmth_k(_temperature(frame, arm, setting), len(row))
+    said: dict[str, Any] = {"temperature_c": setting.temperature_c, **said_of(frame, arm.n, header, row)}
+    conditions = arm.conditions(len(row), said["temperature_c"], said.get("approach"))
     balls = np.array([np.nan if each.ball_mm is None else each.ball_mm for each in arm.probes.values()])
     _remark_repeats(q_rad, header, remarks)
     remark_limits(q_rad, row, "q", arm, path, remarks)
-    p_mm = arm.core.tip(q_rad, probe, warmth_k)
+    p_mm = arm.core.tip(q_rad, probe, **conditions)
     return Touches(path, file_sha256(path), "encoders", _labels(frame, entry, len(row)), p_mm, balls[probe], row)
 
 
@@ -196,11 +198,3 @@ def _labels(frame: pl.DataFrame, entry: VerifyReadings, count: int) -> dict[str,
         else:
             found[name] = np.full(count, given, dtype=object)
     return found
-
-
-def _temperature(frame: pl.DataFrame, arm: Arm, setting: Setting) -> F64 | float | None:
-    if "temperature" in frame.columns:
-        return frame["temperature"].to_numpy()
-    if "temperature1" in frame.columns:
-        return angles(frame, "temperature", np.ones(arm.n))
-    return setting.temperature_c

@@ -211,7 +211,7 @@ fn identifiability(
             start: problem.arm(),
             pins,
             symmetries: &judged.symmetries,
-            known,
+            known: &known.of(arm, problem.parameter_count()),
             sigma,
         },
     )

@@ -33,8 +33,8 @@ impl Problem {
     /// Shapes that do not agree, an unknown probe, a value that is not finite or not positive.
     pub fn add_lengths(&mut self, name: &str, rows: LengthRows, u_mm: f64, fitted: bool) -> Result<usize> {
         let count = rows.length_mm.len();
-        self.check_angles("first poses", Angles { q_rad: rows.q_rad, warmth_k: rows.warmth_k }, count)?;
-        self.check_angles("second poses", Angles { q_rad: rows.p_rad, warmth_k: rows.warmth_k }, count)?;
+        self.check_angles("first poses", rows.from, count)?;
+        self.check_angles("second poses", rows.to, count)?;
         self.check_probes(rows.probe, count)?;
         for &value in rows.length_mm {
             check_size(&format!("a length of artefact {name}"), value)?;
@@ -151,20 +151,10 @@ impl Problem {
                 expected: rows * encoders,
             });
         }
-        if ![0, rows, rows * encoders].contains(&angles.warmth_k.len()) {
-            return Err(Error::Shape {
-                what: format!("the temperatures of the {what}"),
-                got: angles.warmth_k.len(),
-                expected: rows,
-            });
-        }
         if let Some(&value) = angles.q_rad.iter().find(|v| !v.is_finite()) {
             return Err(Error::NotFinite { what: format!("an angle of the {what}"), value });
         }
-        match angles.warmth_k.iter().find(|v| !v.is_finite()) {
-            Some(&value) => Err(Error::NotFinite { what: format!("a temperature of the {what}"), value }),
-            None => Ok(()),
-        }
+        angles.conditions.check(what, rows, encoders)
     }
 
     fn check_probes(&self, probe: &[usize], rows: usize) -> Result<()> {

@@ -3,12 +3,12 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
 use ulna::artefacts::length::LengthRows;
 use ulna::artefacts::points::{Features, Frame, Uncertainty};
 use ulna::artefacts::surface::Side;
 use ulna::artefacts::{Noise, TouchRows};
-use ulna::kinematics::{Angles, tip_mm};
+use ulna::kinematics::{Angles, Conditions, tip_mm};
 use ulna::problem::{BallArtefact, Problem};
 
 pub fn rng(seed: u64) -> Xoshiro256PlusPlus {
@@ -44,6 +44,7 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
     };
     Effects {
         harmonics: Some(harmonics),
+        backlash: Some(Backlash { rad: (0..n).map(|_| small(0.05)).collect() }),
         expansion: Some(Expansion { per_kelvin: (0..n).map(|_| small(1e-3)).collect() }),
         compliance: Some(Compliance {
             rad_per_nm: (0..n).map(|_| small(5e-3)).collect(),
@@ -56,6 +57,27 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
 /// Temperatures above 20 °C, one for each joint of each pose.
 pub fn warmth(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
     (0..count).map(|_| rng.random_range(-8.0..15.0)).collect()
+}
+
+/// From which side each joint of each pose was approached: any, unknown ones too.
+pub fn approach(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
+    (0..count).map(|_| f64::from(rng.random_range(-1..=1))).collect()
+}
+
+/// What was true at poses: of `joints` numbers each, warmth one or one for each joint.
+pub struct Told {
+    pub warmth_k: Vec<f64>,
+    pub approach: Vec<f64>,
+}
+
+impl Told {
+    pub fn any(rng: &mut Xoshiro256PlusPlus, poses: usize, warmths: usize, approaches: usize) -> Told {
+        Told { warmth_k: warmth(rng, poses * warmths), approach: approach(rng, poses * approaches) }
+    }
+
+    pub fn at<'a>(&'a self, q_rad: &'a [f64]) -> Angles<'a> {
+        Angles { q_rad, conditions: Conditions { warmth_k: &self.warmth_k, approach: &self.approach } }
+    }
 }
 
 fn any_joint(rng: &mut Xoshiro256PlusPlus, i: usize) -> Joint {
@@ -123,8 +145,8 @@ fn lengths(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, count: usize) {
     let (q, p) = (angles(rng, n * count), angles(rng, n * count));
     let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
     let length_mm: Vec<f64> = (0..count).map(|_| rng.random_range(100.0..900.0)).collect();
-    let warmth_k = warmth(rng, count);
-    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &warmth_k, probe: &probe, length_mm: &length_mm };
+    let (from, to) = (Told::any(rng, count, 1, n), Told::any(rng, count, 1, n));
+    let rows = LengthRows { from: from.at(&q), to: to.at(&p), probe: &probe, length_mm: &length_mm };
     problem.add_lengths("pairs", rows, 0.0, false).unwrap();
 }
 
@@ -152,12 +174,11 @@ fn uncertain_points(
     let n = problem.arm().encoders();
     let count = placements * touches * features.len();
     let q = angles(rng, n * count);
-    let warmth_k = warmth(rng, n * count);
+    let told = Told::any(rng, count, n, n);
     let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
     let feature: Vec<usize> = (0..count).map(|i| i % features.len()).collect();
     let placement: Vec<i64> = (0..count).map(|i| (i / features.len() % placements) as i64).collect();
-    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
-    let rows = TouchRows { poses, probe: &probe, feature: &feature, placement: &placement };
+    let rows = TouchRows { poses: told.at(&q), probe: &probe, feature: &feature, placement: &placement };
     let labels: Vec<String> = (1..=features.len()).map(|k| format!("f{k}")).collect();
     let features = Features { name: "artefact", labels: &labels, coordinates_mm: features, u, fitted, frame };
     problem.add_points(&features, rows).unwrap();
@@ -184,11 +205,10 @@ fn touched(
     let n = problem.arm().encoders();
     let count = placements * touches;
     let q = angles(rng, n * count);
-    let warmth_k = warmth(rng, count);
+    let told = Told::any(rng, count, 1, n);
     let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
     let placement: Vec<i64> = (0..count).map(|i| (i % placements) as i64).collect();
-    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
-    let rows = TouchRows { poses, probe: &probe, feature: &vec![0; count], placement: &placement };
+    let rows = TouchRows { poses: told.at(&q), probe: &probe, feature: &vec![0; count], placement: &placement };
     add(problem, rows).unwrap();
 }
 

@@ -1,125 +1,112 @@
-"""What a joint does beyond its geometry: an eccentric encoder, a link that grows, a bearing that gives way.
+"""What joints do beyond their geometry: one row each. All of it is off until an arm has it.
 
-    turn_i = sign_i (q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i) - theta0_i + compliance_i m_i
-    a_i, d_i (of the last joint: the tip) grow by the factor 1 + expansion_i (T - 20 °C)
+    turn_i = sign_i (q_i + what the encoder adds) - theta0_i + what the bearing gives way
+    a_i, d_i (of the last joint: the tip) times how much the link grows
 
-with m_i the moment, about axis i, of gravity on all that the joint carries, N m. All of it is off until an arm has it.
-Names of the parameters: `joint.3.c1`, `joint.3.s1`, …, `joint.3.expansion`, `joint.3.compliance`.
+Names of the parameters are `joint.3.c1`, `joint.3.expansion` and so on; each effect's file says its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import lru_cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
-import numpy as np
-
-from ulna.ground.arrays import F64
-
-Extra = Literal["encoder-harmonics", "link-expansion", "compliance"]
-
-EXTRAS: tuple[Extra, ...] = ("encoder-harmonics", "link-expansion", "compliance")
-"""The blocks that a fit may be asked for, in the order of their parameters."""
-
-PATTERNS: dict[str, tuple[str, ...]] = {
-    "encoder-harmonics": ("joint.*.c[0-9]*", "joint.*.s[0-9]*"),
-    "link-expansion": ("joint.*.expansion",),
-    "compliance": ("joint.*.compliance",),
-}
-"""Shell-style patterns of their parameters' names."""
-
-REFERENCE_C = 20.0
-"""Lengths are those at this temperature (ISO 1), °C."""
+from ulna.arm.conditions import Condition
+from ulna.arm.effects.compliance import ComplianceOfJoint
+from ulna.arm.effects.effect import Effect, Row
+from ulna.arm.effects.expansion import ExpansionOfJoint
+from ulna.arm.effects.harmonics import HarmonicsOfJoint
+from ulna.formats.models import Strict
+from ulna.ground.errors import UlnaInputError, nearest
 
 
 @dataclass(frozen=True)
-class Effects:
+class Effects(
+    # a row each; dataclasses take the fields of the last one first
+    ComplianceOfJoint,
+    ExpansionOfJoint,
+    HarmonicsOfJoint,
+):
     """Of one joint. What is None or empty the joint does not have."""
 
-    harmonics_rad: Mapping[int, tuple[float, float]] = field(default_factory=dict)
-    """Order k → amplitudes (c_k, s_k) of the encoder's error."""
-    expansion_per_k: float | None = None
-    """Of the link after the joint; of the last joint, of the probe."""
-    compliance_rad_per_nm: float | None = None
-    """How far the joint gives way to a moment about its axis."""
-    mass_kg: float = 0.0
-    """Of what moves with the joint up to the next: its link."""
-    centre_mm: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """The centre of that mass, in the frame after the link."""
 
+EFFECTS: dict[str, Effect] = {row.effect.name: row.effect for row in cast(list[type[Row]], Effects.__bases__[::-1])}
+"""By name, in the order in which messages list them."""
+
+if TYPE_CHECKING:
+    Extra: TypeAlias = str
+else:
+    Extra = Literal[tuple(EFFECTS)]
+    """The blocks that a fit may be asked for."""
+
+EXTRAS: tuple[Extra, ...] = tuple(EFFECTS)
 
 NONE = Effects()
 
-
-def extras_of(joints: Sequence[Effects]) -> list[Extra]:
-    """The blocks that an arm of such joints has."""
-    has = {
-        "encoder-harmonics": any(own.harmonics_rad for own in joints),
-        "link-expansion": any(own.expansion_per_k is not None for own in joints),
-        "compliance": any(own.compliance_rad_per_nm is not None for own in joints),
-    }
-    return [extra for extra in EXTRAS if has[extra]]
+UNITS = {effect.unit: effect.drawn for effect in EFFECTS.values()}
+"""Of the parameters, and what may be of each before anybody has measured."""
 
 
-def orders_of(joints: Sequence[Effects]) -> list[int]:
-    """The orders of harmonics that any of the joints has, ascending."""
-    return sorted({order for own in joints for order in own.harmonics_rad})
+def joint_tables() -> tuple[type[Strict], ...]:
+    """The keys of a joint's table that each effect has."""
+    return tuple(effect.table for effect in EFFECTS.values())
+
+
+def effects_of(joints: Sequence[Effects]) -> list[Effect]:
+    """Those that an arm of such joints has."""
+    return [effect for effect in EFFECTS.values() if any(effect.has(own) for own in joints)]
+
+
+def needs_of(joints: Sequence[Effects]) -> dict[Condition, Effect]:
+    """On which conditions of a pose an arm of such joints depends, each with the effect that asks for it."""
+    return {effect.needs: effect for effect in effects_of(joints) if effect.needs is not None}
+
+
+def effect_named(name: str) -> Effect:
+    """Raises UlnaInputError where there is none."""
+    if name not in EFFECTS:
+        raise UlnaInputError(f"there is no effect {name!r}; expected {', '.join(EFFECTS)}.{nearest(name, EFFECTS)}")
+    return EFFECTS[name]
 
 
 def with_extras(own: Effects, extras: Sequence[str], orders: Sequence[int]) -> Effects:
     """The effects with zero of what `extras` asks for, where there is none of it yet; orders: of harmonics."""
-    if "encoder-harmonics" in extras:
-        own = replace(own, harmonics_rad=dict.fromkeys(sorted(orders), (0.0, 0.0)) | dict(own.harmonics_rad))
-    if "link-expansion" in extras and own.expansion_per_k is None:
-        own = replace(own, expansion_per_k=0.0)
-    if "compliance" in extras and own.compliance_rad_per_nm is None:
-        own = replace(own, compliance_rad_per_nm=0.0)
+    for extra in extras:
+        own = replace(own, **effect_named(extra).zero(own, orders))
     return own
+
+
+def without(own: Effects) -> Effects:
+    """None of them; what is known from the design stays."""
+    return replace(own, **_together(effect.none() for effect in EFFECTS.values()))
 
 
 @lru_cache(maxsize=4096)  # every fit asks it of every parameter, several times
 def extra_of(parameter: str) -> Extra | None:
     """The block that a parameter belongs to, by its name."""
-    own = (extra for extra in EXTRAS if any(fnmatchcase(parameter, pattern) for pattern in PATTERNS[extra]))
+    own = (name for name, effect in EFFECTS.items() if any(fnmatchcase(parameter, p) for p in effect.patterns))
     return next(own, None)
 
 
-def for_core(joints: Sequence[Effects], gravity: Sequence[float]) -> dict[str, Any]:
-    """The arguments of `_core.Arm.with_effects`: a joint without what others have counts as having zero of it."""
-    extras, orders = extras_of(joints), orders_of(joints)
-    given: dict[str, Any] = {}
-    if orders:
-        given["harmonic_orders"] = orders
-        given["harmonics_rad"] = np.array(
-            [[own.harmonics_rad.get(order, (0.0, 0.0)) for order in orders] for own in joints]
-        )
-    if "link-expansion" in extras:
-        given["expansion_per_k"] = np.array([own.expansion_per_k or 0.0 for own in joints])
-    if "compliance" in extras:
-        given["compliance_rad_per_nm"] = np.array([own.compliance_rad_per_nm or 0.0 for own in joints])
-        given["masses_kg"] = np.array([own.mass_kg for own in joints])
-        given["centres_mm"] = np.array([own.centre_mm for own in joints], dtype=np.float64)
-        given["gravity"] = [float(g) for g in gravity]
-    return given
+def for_core(joints: Sequence[Effects], gravity: Sequence[float]) -> list[tuple[str, dict[str, Any]]]:
+    """The argument of `_core.Arm.with_effects`."""
+    return [(effect.name, effect.for_core(joints, gravity)) for effect in effects_of(joints)]
 
 
-def from_core(joints: Sequence[Effects], values: F64) -> list[Effects]:
-    """The joints' effects with other values, in the order of the core's parameters behind the geometry."""
-    n, orders, extras = len(joints), orders_of(joints), extras_of(joints)
-    harmonics, rest = values[: 2 * len(orders) * n].reshape(n, len(orders), 2).tolist(), values[2 * len(orders) * n :]
-    blocks: dict[str, list[float]] = {}
-    for extra in extras:
-        if extra != "encoder-harmonics":
-            blocks[extra], rest = rest[:n].tolist(), rest[n:]
+def from_core(joints: Sequence[Effects], values: dict[str, float]) -> list[Effects]:
+    """The joints' effects with other values of their parameters, by name."""
+    of_joint: list[dict[str, dict[str, float]]] = [{} for _ in joints]
+    for parameter, value in values.items():
+        _, number, suffix = parameter.split(".", 2)
+        of_joint[int(number) - 1].setdefault(str(extra_of(parameter)), {})[suffix] = value
     return [
-        replace(
-            own,
-            harmonics_rad={order: (c, s) for order, (c, s) in zip(orders, harmonics[k], strict=True)},
-            expansion_per_k=blocks["link-expansion"][k] if "link-expansion" in blocks else None,
-            compliance_rad_per_nm=blocks["compliance"][k] if "compliance" in blocks else None,
-        )
-        for k, own in enumerate(joints)
+        replace(own, **_together(EFFECTS[name].taken(own, values) for name, values in found.items()))
+        for own, found in zip(joints, of_joint, strict=True)
     ]
+
+
+def _together(changes: Iterable[dict[str, Any]]) -> dict[str, Any]:
+    return {field: value for each in changes for field, value in each.items()}

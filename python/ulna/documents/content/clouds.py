@@ -9,9 +9,10 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import Conditions, some_of
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
-from ulna.study.assembly import warmth_k
+from ulna.study.assembly import conditions_of
 from ulna.study.study import Study
 
 F64 = NDArray[np.float64]
@@ -70,15 +71,15 @@ class _Poses:
     def __init__(self, study: Study, arm: Arm, group: Readings, rows: pl.DataFrame, first: int) -> None:
         self.kind = group.artefact.kind
         poses = [group.q_rad] if group.p_rad is None else [group.q_rad, group.p_rad]
-        warmth = warmth_k(study, arm, group)
+        conditions = conditions_of(study, arm, group)
         probe = group.probe
         self.q_rad = np.concatenate(poses)
         self.reading = np.tile(np.arange(first, first + len(group)), len(poses))
         self.temperature_c = None if group.temperature_c is None else np.concatenate([group.temperature_c] * len(poses))
         self.size_mm = np.tile(rows["norm_mm"].to_numpy(), len(poses))
-        tips = [arm.core.tip(np.ascontiguousarray(q), probe, warmth) for q in poses]
+        tips = [arm.core.tip(np.ascontiguousarray(q), probe, **at) for q, at in zip(poses, conditions, strict=True)]
         self.tip_mm = np.concatenate(tips)
-        by_joint = [_encoder_jacobian(arm, np.ascontiguousarray(q), probe, warmth) for q in poses]
+        by_joint = [_encoder_jacobian(arm, q, probe, at) for q, at in zip(poses, conditions, strict=True)]
         if group.p_rad is not None:
             along = tips[1] - tips[0]
             along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
@@ -99,14 +100,12 @@ class _Poses:
             self.along_joint_mm = np.where(moved > 1e-9, along / np.maximum(moved, 1e-300), 0.0)
 
 
-def _encoder_jacobian(arm: Arm, q_rad: F64, probe: I64, warmth: F64 | None) -> F64:
+def _encoder_jacobian(arm: Arm, q_rad: F64, probe: I64, conditions: Conditions) -> F64:
     """(N, 3, n), each row with its own probe."""
     found = np.empty((len(q_rad), 3, arm.n))
     for index in np.unique(probe).tolist():
         own = probe == index
-        found[own] = arm.core.encoder_jacobian(
-            np.ascontiguousarray(q_rad[own]), index, None if warmth is None else np.ascontiguousarray(warmth[own])
-        )
+        found[own] = arm.core.encoder_jacobian(np.ascontiguousarray(q_rad[own]), index, **some_of(conditions, own))
     return found
 
 

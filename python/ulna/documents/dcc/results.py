@@ -58,14 +58,8 @@ def _given(sheet: Sheet, data: Element, result: Result) -> None:
         (f"joint.{k}.sign", joint.sign, "1") for k, joint in enumerate(arm.joints, 1)
     ]
     given += [(f"probe.{name}.ball", probe.ball_mm, "mm") for name, probe in arm.probes.items() if probe.ball_mm]
-    if "compliance" in arm.extras:
-        for k, joint in enumerate(arm.joints, 1):
-            given.append((f"joint.{k}.mass", joint.effects.mass_kg, "kg"))
-            given += [
-                (f"joint.{k}.centre.{axis}", value, "mm")
-                for axis, value in zip("xyz", joint.effects.centre_mm, strict=True)
-            ]
-        given += [(f"gravity.{axis}", value, "1") for axis, value in zip("xyz", arm.gravity, strict=True)]
+    for effect in arm.effects:
+        given += effect.given([joint.effects for joint in arm.joints], arm.gravity)
     names, values, units = zip(*given, strict=True)
     real_list(sheet, quantity(sheet, data, sheet.own("dcc.given")), names, values, units)
 

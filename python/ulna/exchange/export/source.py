@@ -63,12 +63,7 @@ def remarks_of_result(path: Path) -> list[str]:
 
 def not_carried(arm: Arm) -> list[str]:
     """What an arm has beyond rigid links and turning joints, in words: neither a URDF nor a table carries it."""
-    words = {
-        "encoder-harmonics": "the errors of its encoders (harmonics)",
-        "link-expansion": "the growth of its links with temperature",
-        "compliance": "the compliance of its joints",
-    }
-    return [words[extra] for extra in arm.extras]
+    return [effect.words for effect in arm.effects]
 
 
 def remark_not_carried(left_out: list[str], what: str, path: Path) -> str:

@@ -19,6 +19,7 @@ from ulna.formats.rows import Condition, SplitTable
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.study.readings.conditions import check_conditions, condition_columns, is_condition
 
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
@@ -31,14 +32,14 @@ MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if
 
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return column in MEASURED or re.fullmatch(r"[qp][0-9]+|temperature[0-9]*|[xyzu]", column) is not None
+    return column in MEASURED or is_condition(column) or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
 
 
 def known_columns(joints: int, coordinates: bool) -> list[str]:
     """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
     their own."""
-    several = [f"{name}{k}" for name in ("q", "p", "temperature") for k in range(1, joints + 1)]
-    return [*NAMES, *MEASURED, "temperature", *several, *(COORDINATES if coordinates else ())]
+    several = [f"{name}{k}" for name in ("q", "p") for k in range(1, joints + 1)]
+    return [*NAMES, *MEASURED, *several, *condition_columns(joints), *(COORDINATES if coordinates else ())]
 
 
 def temperature_columns(header: Header, joints: int) -> list[str]:
@@ -59,14 +60,7 @@ def check_columns(
     unless it is one of `asked`, of which the study speaks. Returns the known columns that are there."""
     for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
         _check_angles(header, letter, joints, arm)
-    each = [f"temperature{k}" for k in range(1, joints + 1)]
-    there = [column for column in header.columns if re.fullmatch(r"temperature[0-9]+", column)]
-    if there and (sorted(there) != sorted(each) or "temperature" in header.columns):
-        raise UlnaInputError(
-            f"{header.path}: {header.head}: the temperature columns are {', '.join(there)}; expected one column "
-            f"temperature, or temperature1 … temperature{joints} for the {joints} joints of arm '{arm}'. Correct the "
-            "header."
-        )
+    check_conditions(header, joints, arm)
     known = known_columns(joints, coordinates)
     words = [name for name in known if not name[-1].isdecimal()]
     remark_strange(header, known, words, remarks, asked)
@@ -117,6 +111,9 @@ class ReadingsEntry(TableKeys):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    approach: Literal["column", "order"] | None = None
+    """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
+    be said), or the order of the rows: the sign of each encoder's last change."""
     where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
     """Filter: column = what it must hold. A text, a number, a list of these, or limits `{ above, below }`."""
     split: SplitTable | None = None

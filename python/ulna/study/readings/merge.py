@@ -65,19 +65,22 @@ def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
         row=of("row"),
         file=of("file"),
         id=of("id"),
-        temperature_c=_temperatures(own),
+        temperature_c=_said(own, "temperature_c"),
+        approach=_said(own, "approach"),
+        p_approach=_said(own, "p_approach"),
     )
 
 
-def _temperatures(own: list[Readings]) -> Any:
+def _said(own: list[Readings], field: str) -> Any:
     """NaN where a file gives none; one column per joint where any file has that."""
-    given = [part.temperature_c for part in own if part.temperature_c is not None]
+    arrays: list[Any] = [getattr(part, field) for part in own]
+    given = [array for array in arrays if array is not None]
     if not given:
         return None
     widths = [array.shape[1] for array in given if array.ndim == 2]
     joined = []
-    for part in own:
-        array = np.full(len(part), np.nan) if part.temperature_c is None else part.temperature_c
+    for part, said in zip(own, arrays, strict=True):
+        array = np.full(len(part), np.nan) if said is None else said
         if widths and array.ndim == 1:
             array = np.repeat(array[:, np.newaxis], widths[0], axis=1)
         joined.append(array)

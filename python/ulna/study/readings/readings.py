@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -21,7 +22,17 @@ from ulna.formats.units import RAD_PER, Units
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.checks import check_ids, check_scale
-from ulna.study.readings.columns import Source, check_columns, codes, each_row, is_numeric, known_columns, remark_unused
+from ulna.study.readings.columns import (
+    ReadingsEntry,
+    Source,
+    check_columns,
+    codes,
+    each_row,
+    is_numeric,
+    known_columns,
+    remark_unused,
+)
+from ulna.study.readings.conditions import approach_by_order, said_of
 from ulna.study.readings.own_points import has_own_points, own_points
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
@@ -62,6 +73,8 @@ def _table(
     layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
     coordinates = any(map(has_own_points, artefacts.values()))
     header = read_header(path, WHAT, layout, known_columns(arm.n, coordinates))
+    _check_approach(entry, header, place)
+    by_order = entry.approach == "order"
     selection = Selection(entry.where or {}, entry.split, which, place)
     asked = list(dict.fromkeys(selection.columns(header).values()))
     needed = check_columns(header, arm.n, arm.name, remarks, coordinates, asked)
@@ -75,9 +88,14 @@ def _table(
                 f"{path}: {', '.join(map(header.own, asked))} {'have' if len(asked) > 1 else 'has'} {rows} rows, the "
                 f"readings {len(every)}; expected as many where rows are chosen by them ({place}'). Correct the arrays."
             )
-        frame = header.checked(every[chosen], is_numeric, row, blank=NAMELESS)
+        if by_order:  # the row before may be none of those that are used
+            whole = header.checked(every, is_numeric, np.arange(1, rows + 1), blank=NAMELESS)
+            frame = _approached(whole, arm.n)[chosen]
+        else:
+            frame = header.checked(every[chosen], is_numeric, row, blank=NAMELESS)
     else:
         frame = read_table(header, is_numeric, needed, NAMELESS)
+        frame = _approached(frame, arm.n) if by_order and len(frame) else frame
         row, rows = np.arange(1, len(frame) + 1), len(frame)
     if not rows:
         raise UlnaInputError(
@@ -116,6 +134,7 @@ def _part(
         check_scale(p_rad, "p", factors, source.entry.angle or units.angle, header, row)
     if kind.measured_column is not None:
         length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
+    said: dict[str, Any] = {**said_of(frame, arm.n, header, row)}
     return Readings(
         artefact=artefact,
         q_rad=q_rad,
@@ -129,7 +148,7 @@ def _part(
         row=row,
         file=np.full(len(row), source.index, dtype=np.int64),
         id=frame["id"].to_numpy().astype(object) if "id" in frame.columns else None,
-        temperature_c=_temperatures(frame, arm.n),
+        **said,
     )
 
 
@@ -201,9 +220,30 @@ def _placements(frame: pl.DataFrame, row: I64, source: Source, header: Header, r
     return Labels(np.repeat(code.to_numpy(), runs.field("len").to_numpy()), names.to_list())
 
 
-def _temperatures(frame: pl.DataFrame, joints: int) -> F64 | None:
-    if "temperature" in frame.columns:
-        return frame["temperature"].to_numpy()
-    if "temperature1" in frame.columns:
-        return angles(frame, "temperature", np.ones(joints))
-    return None
+def _approached(frame: pl.DataFrame, joints: int) -> pl.DataFrame:
+    """With columns that say from which side joints were approached, by the order of all rows of a file."""
+    q, p = ([f"{letter}{k}" for k in range(1, joints + 1)] for letter in "qp")
+    two = p[0] in frame.columns
+    both = approach_by_order(frame.select(q).to_numpy(), frame.select(p).to_numpy() if two else None)
+    named = {"approach": both[0], "papproach": both[1]}
+    return frame.with_columns(
+        pl.Series(f"{prefix}{k + 1}", np.ascontiguousarray(values[:, k]))
+        for prefix, values in named.items()
+        if values is not None
+        for k in range(joints)
+    )
+
+
+def _check_approach(entry: ReadingsEntry, header: Header, place: str) -> None:
+    """The file says it in the way that the study says. Raises UlnaInputError."""
+    there = "approach1" in header.columns
+    if entry.approach == "order" and there:
+        raise UlnaInputError(
+            f"{place}.approach': got 'order', but {header.path} has columns approach1, …; expected one way of saying "
+            "from which side joints were approached. Remove the key or the columns."
+        )
+    if entry.approach == "column" and not there:
+        raise UlnaInputError(
+            f"{place}.approach': got 'column', but {header.path} has no columns approach1, …; expected +1, -1 or 0 for "
+            "each joint there. Add them, or say 'order' where the rows are in the order of the touches."
+        )

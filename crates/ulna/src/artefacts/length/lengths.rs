@@ -2,6 +2,7 @@
 
 use super::kernels::{LengthOp, VarianceOp};
 use super::run::Run;
+use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
@@ -28,12 +29,10 @@ pub struct Lengths {
 /// What one row of a file says.
 #[derive(Debug, Clone, Copy)]
 pub struct LengthRows<'a> {
-    /// Row-major angles of the first pose, rad.
-    pub q_rad: &'a [f64],
-    /// Row-major angles of the second pose, rad.
-    pub p_rad: &'a [f64],
-    /// How warm the arm was, as in [`Angles`].
-    pub warmth_k: &'a [f64],
+    /// The first poses.
+    pub from: Angles<'a>,
+    /// The second poses.
+    pub to: Angles<'a>,
     /// Which probe took each row.
     pub probe: &'a [usize],
     /// Calibrated distance of each row, mm.
@@ -44,27 +43,40 @@ impl Lengths {
     /// Rows of an arm of `encoders` joints. `u_mm` is the standard uncertainty of the length, common to all rows; `fitted`:
     /// it is an unknown of the fit within that.
     pub fn new(name: &str, encoders: usize, data: LengthRows, u_mm: f64, fitted: bool) -> Lengths {
-        let probes = data.probe.iter().max().map_or(0, |&p| p + 1);
+        Lengths::between(name, data.probe, data.length_mm, (u_mm, fitted), |rows| {
+            [data.from, data.to].map(|poses| Poses::gathered(poses, encoders, rows))
+        })
+    }
+
+    /// Rows by the probe and the length of each; `ends` gives both poses of some of the rows.
+    pub(in crate::artefacts) fn between(
+        name: &str,
+        probe_of: &[usize],
+        length_mm: &[f64],
+        (u_mm, fitted): (f64, bool),
+        ends: impl Fn(&[usize]) -> [Poses; 2],
+    ) -> Lengths {
+        let probes = probe_of.iter().max().map_or(0, |&p| p + 1);
         let mut runs = Vec::new();
         for probe in 0..probes {
-            let rows: Vec<usize> = (0..data.probe.len()).filter(|&r| data.probe[r] == probe).collect();
+            let rows: Vec<usize> = (0..probe_of.len()).filter(|&r| probe_of[r] == probe).collect();
             if rows.is_empty() {
                 continue;
             }
-            let length: Vec<f64> = rows.iter().map(|&r| data.length_mm[r]).collect();
+            let [from, to] = ends(&rows);
             runs.push(Run {
                 probe,
-                from: Poses::gathered(Angles { q_rad: data.q_rad, warmth_k: data.warmth_k }, encoders, &rows),
-                to: Poses::gathered(Angles { q_rad: data.p_rad, warmth_k: data.warmth_k }, encoders, &rows),
-                length_mm: Columns::from_rows(&length, 1),
+                from,
+                to,
+                length_mm: Columns::gathered(length_mm, 1, &rows),
                 weight: ones(rows.len()),
                 discounted: None,
                 rows,
             });
         }
-        let first_mm = data.length_mm.first().copied().unwrap_or(0.0);
+        let first_mm = length_mm.first().copied().unwrap_or(0.0);
         let length = Dimension { name: format!("artefact.{name}.length"), value_mm: first_mm, u_mm, fitted };
-        Lengths { runs, dimensions: if u_mm > 0.0 { vec![length] } else { vec![] }, rows: data.probe.len() }
+        Lengths { runs, dimensions: if u_mm > 0.0 { vec![length] } else { vec![] }, rows: probe_of.len() }
     }
 }
 
@@ -216,9 +228,8 @@ impl Readings for Lengths {
         self.runs.iter().flat_map(run_poses).collect()
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        let ranges = self.runs.iter().filter_map(|run| run.from.warmth_range_k());
-        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+    fn seen(&self) -> Seen {
+        self.runs.iter().flat_map(|run| [run.from.seen(), run.to.seen()]).reduce(Seen::and).unwrap_or_default()
     }
 
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {

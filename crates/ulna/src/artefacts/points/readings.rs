@@ -5,8 +5,9 @@ use super::placement::{Placement, Touch};
 use super::rows;
 use super::touched::Points;
 use super::weigh;
+use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
-use crate::artefacts::length::{LengthRows, Lengths};
+use crate::artefacts::length::Lengths;
 use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
 use crate::artefacts::readings::Readings;
@@ -111,8 +112,8 @@ impl Readings for Points {
         self.touches.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.touches.poses.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.touches.poses.seen()
     }
 
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
@@ -160,11 +161,10 @@ impl Readings for Points {
     }
 
     fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
-        let (feature, probe, poses) = (&self.touches.feature, &self.touches.probe, &self.touches.poses);
+        let (feature, probe) = (&self.touches.feature, &self.touches.probe);
         let a_bar = |rows: &Range<usize>| {
             let (a, b) = (rows.start, rows.start + 1);
-            let warm = |row: usize| poses.sample(row, 0).warmth_k;
-            rows.len() == 2 && feature[a] != feature[b] && probe[a] == probe[b] && warm(a) == warm(b)
+            rows.len() == 2 && feature[a] != feature[b] && probe[a] == probe[b]
         };
         let two_features = self.frame == Frame::Free && self.features_mm.len() == 2;
         let known = self.of_its_own.iter().all(|&variance| variance == 0.0) && self.dimensions.len() <= 1;
@@ -192,22 +192,15 @@ impl Readings for Points {
 impl Points {
     /// Pairs of touches as lengths between them.
     fn lengths_between(&self, pairs: &[(usize, usize)], name: &str, u_mm: f64, fitted: bool) -> Lengths {
-        let (mut q_rad, mut p_rad, mut warmth_k) = (vec![], vec![], vec![]);
-        for &(from, to) in pairs {
-            let (first, second) = (self.touches.poses.sample(from, 0), self.touches.poses.sample(to, 0));
-            q_rad.extend(first.q_rad);
-            p_rad.extend(second.q_rad);
-            warmth_k.extend(first.warmth_k);
-        }
         let feature = |row: usize| self.features_mm[self.touches.feature[row]];
-        let rows = LengthRows {
-            q_rad: &q_rad,
-            p_rad: &p_rad,
-            warmth_k: &warmth_k,
-            probe: &pairs.iter().map(|&(from, _)| self.touches.probe[from]).collect::<Vec<_>>(),
-            length_mm: &pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect::<Vec<_>>(),
-        };
-        Lengths::new(name, self.touches.poses.encoders(), rows, u_mm, fitted)
+        let probe: Vec<usize> = pairs.iter().map(|&(from, _)| self.touches.probe[from]).collect();
+        let length_mm: Vec<f64> = pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect();
+        Lengths::between(name, &probe, &length_mm, (u_mm, fitted), |rows| {
+            let end = |row_of: fn(&(usize, usize)) -> usize| {
+                self.touches.poses.picked(&rows.iter().map(|&row| row_of(&pairs[row])).collect::<Vec<_>>())
+            };
+            [end(|pair| pair.0), end(|pair| pair.1)]
+        })
     }
 
     /// Touches of one standing in pairs at different features, with one probe each: every touch with three others at most,

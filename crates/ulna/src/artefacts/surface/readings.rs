@@ -1,6 +1,7 @@
 //! Touches of a surface as readings.
 
 use super::shape::{Contact, Shape, Touched, UNKNOWNS};
+use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
@@ -261,8 +262,8 @@ impl<S: Shape> Readings for Surface<S> {
         self.touches.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.touches.poses.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.touches.poses.seen()
     }
 
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
