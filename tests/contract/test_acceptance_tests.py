@@ -18,7 +18,8 @@ from tests.cli_runs import platinum
 import ulna
 from ulna.arm.arm import Arm
 from ulna.arm.probe import Probe
-from ulna.documents.languages.words import LANGUAGES, dictionary
+from ulna.documents.languages.languages import LANGUAGES
+from ulna.documents.languages.words import dictionary
 from ulna.formats.models import OneOf, Strict
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.errors import UlnaInputError

@@ -14,7 +14,7 @@ from tests.documents.test_html import Page, figures
 from tests.reports import calibrated
 
 from ulna import UlnaInputError
-from ulna.documents.acceptance import wholes
+from ulna.documents.content.acceptance import wholes
 from ulna.documents.gather import gather
 from ulna.documents.html.page import render
 

@@ -7,26 +7,26 @@ import dataclasses
 import hashlib
 import json
 import re
-import string
-import tomllib
 from html.parser import HTMLParser
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.cli_runs import write_lengths
 from tests.reports import HOSTILE, calibrated, seats_study
 
-import ulna
 from ulna.calibration.placements import PlacementFigures
-from ulna.documents.content import Content, Quiver, ReadingRows, Said
-from ulna.documents.distribution import _sample
+from ulna.documents.content.clouds import Quiver
+from ulna.documents.content.content import Content
+from ulna.documents.content.distribution import _sample
+from ulna.documents.content.readings import ReadingRows
 from ulna.documents.gather import gather
-from ulna.documents.html.markup import in_figure, json_in_script, number, prose
+from ulna.documents.html.markup import inline, json_in_script, label
 from ulna.documents.html.page import render
-from ulna.documents.languages.words import LANGUAGES, dictionary
+from ulna.documents.languages.languages import LANGUAGES
+from ulna.documents.languages.said import Said
+from ulna.documents.languages.text import Command, Name, number
+from ulna.documents.languages.words import dictionary
 
-DOCUMENT = Path(ulna.__file__).parent / "documents"
 MEGABYTES_10 = 10_000_000
 
 
@@ -107,8 +107,8 @@ def test_json_in_a_script_ends_nothing():
     assert json.loads(text) == value
     with pytest.raises(ValueError, match="not JSON compliant"):
         json_in_script(float("nan"))
-    assert in_figure("<b>\u202e") == "\u2068&lt;b&gt;\u202e\u2069"
-    assert prose("run `ulna <x>`") == "run <code>ulna &lt;x&gt;</code>"
+    assert label((Name("<b>\u202e"),)) == "\u2068&lt;b&gt;\u202e\u2069"
+    assert inline(("run ", Command("ulna <x>"))) == "run <code>ulna &lt;x&gt;</code>"
 
 
 def test_numbers_in_sentences():
@@ -246,31 +246,6 @@ def test_the_laboratory_is_named(root, tmp_path):
 
 def test_the_same_content_gives_the_same_bytes(hostile):
     assert render(hostile) == render(hostile)
-
-
-def fields(text: str) -> set[str]:
-    return {name for _, name, _, _ in string.Formatter().parse(text) if name}
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_languages_have_the_same_keys_and_values(language):
-    own, english = dictionary(language), dictionary("en")
-    assert set(own) == set(english)
-    assert [key for key in english if fields(own[key]) != fields(english[key])] == []
-    assert [key for key in own if not own[key].strip()] == []
-    raw = (DOCUMENT / "languages" / f"{language}.toml").read_text(encoding="utf-8")
-    assert tomllib.loads(raw) == own
-
-
-def test_every_word_is_used():
-    source = "\n".join(path.read_text(encoding="utf-8") for path in sorted(DOCUMENT.rglob("*.py")))
-    begun = set(re.findall(r"""f["']([a-z0-9-]+\.)\{""", source))
-    unused = []
-    for key in dictionary("en"):
-        literal = f'"{key}"' in source or f"'{key}'" in source
-        if not literal and not any(key.startswith(start) for start in begun) and not re.fullmatch("O[1-5]", key):
-            unused.append(key)
-    assert unused == []
 
 
 def many(content: Content, count: int) -> Content:

@@ -13,7 +13,7 @@ from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated, seats_study
 
 from ulna.calibration.extras import JudgedExtra
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.gather import gather
 from ulna.documents.languages.words import dictionary
 from ulna.documents.pdf.blocks import table

@@ -17,7 +17,7 @@ from tests.cli_runs import write_lengths
 from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.gather import gather
 from ulna.documents.languages.words import dictionary
 from ulna.documents.pdf import fonts

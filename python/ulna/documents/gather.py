@@ -9,18 +9,18 @@ from typing import TypeVar
 
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.result import Result
-from ulna.documents.acceptance import verification
-from ulna.documents.artefacts import artefact_rows
-from ulna.documents.clouds import Cloud, Quiver, clouds
-from ulna.documents.content import Content
-from ulna.documents.distribution import samples
-from ulna.documents.environment import environment
-from ulna.documents.held_out import held_out
-from ulna.documents.missing import missing_parts
-from ulna.documents.parameters import observability, parameters
-from ulna.documents.provenance import provenance
-from ulna.documents.quality import quality_rows, residual_row
-from ulna.documents.readings import length_errors, reading_rows
+from ulna.documents.content.acceptance import verification
+from ulna.documents.content.artefacts import artefact_rows
+from ulna.documents.content.clouds import Cloud, Quiver, clouds
+from ulna.documents.content.content import Content
+from ulna.documents.content.distribution import samples
+from ulna.documents.content.environment import environment
+from ulna.documents.content.held_out import held_out
+from ulna.documents.content.missing import missing_parts
+from ulna.documents.content.parameters import observability, parameters
+from ulna.documents.content.provenance import provenance
+from ulna.documents.content.quality import quality_rows, residual_row
+from ulna.documents.content.readings import length_errors, reading_rows
 from ulna.documents.sources.cross_validation import CROSS_VALIDATION
 from ulna.documents.sources.evaluation import EVALUATION
 from ulna.documents.sources.laboratory import LABORATORY

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.formats.output import check_output, output_folder, refuse_inputs, write_file
 from ulna.ground.errors import UlnaInputError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.html.parameter_plots import correlation_plot, length_plot, singular_plot
 from ulna.documents.html.plots import Plot
 from ulna.documents.html.residual_plots import cloud_plot, histogram_plot, quantile_plot

@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.html.blocks import Legend, asset, cloud_legend, environment, macro_of
 from ulna.documents.html.drawings import draw
 from ulna.documents.html.markup import json_in_script

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
+from ulna.documents.content.parameters import Observability, Parameters
+from ulna.documents.content.readings import Lengths
+from ulna.documents.content.thinning import shown
 from ulna.documents.html.markup import label, labels
 from ulna.documents.html.plots import INK, MAIN, SECOND, Plot, axis, layout, numbers, points
 from ulna.documents.languages.text import named
 from ulna.documents.languages.words import Words
-from ulna.documents.parameters import Observability, Parameters
-from ulna.documents.readings import Lengths
-from ulna.documents.thinning import shown
 
 MOST_LENGTHS = 3000
 

@@ -7,14 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.documents.clouds import Cloud
-from ulna.documents.distribution import Sample
+from ulna.documents.content.clouds import Cloud
+from ulna.documents.content.distribution import Sample
+from ulna.documents.content.readings import ReadingRows
+from ulna.documents.content.thinning import shown, shown_ranks
 from ulna.documents.html.markup import label, labels
 from ulna.documents.html.plots import INK, MAIN, OUTLIER, Plot, axis, layout, line, numbers, points
 from ulna.documents.languages.text import joined, named, number
 from ulna.documents.languages.words import Words
-from ulna.documents.readings import ReadingRows
-from ulna.documents.thinning import shown, shown_ranks
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

@@ -7,14 +7,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.documents.clouds import Quiver
+from ulna.documents.content.clouds import Quiver
+from ulna.documents.content.readings import ReadingRows
+from ulna.documents.content.thinning import runs, shown
 from ulna.documents.html.markup import label, labels
 from ulna.documents.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, numbers, points
 from ulna.documents.html.residual_plots import where
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
-from ulna.documents.readings import ReadingRows
-from ulna.documents.thinning import runs, shown
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

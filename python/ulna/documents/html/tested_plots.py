@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ulna.documents.acceptance import TestedLengths, limit_lines
+from ulna.documents.content.acceptance import TestedLengths, limit_lines
 from ulna.documents.html.markup import labels
 from ulna.documents.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, line, points
 from ulna.documents.languages.words import Words

@@ -15,8 +15,8 @@ from importlib import resources
 from typing import Any
 
 from ulna.documents.languages.languages import language_of
+from ulna.documents.languages.said import Said
 from ulna.documents.languages.text import Command, Name, Piece, Text, number
-from ulna.documents.said import Said
 
 
 @cache

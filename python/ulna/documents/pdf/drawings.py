@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf import parameter_plots, plots

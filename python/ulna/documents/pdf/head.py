@@ -6,7 +6,7 @@ import datetime
 from pathlib import Path
 from typing import Any
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf.text import clean, line, name

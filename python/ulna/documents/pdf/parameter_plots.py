@@ -8,14 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.ticker import NullLocator
 
-from ulna.documents.acceptance import TestedLengths, limit_lines
+from ulna.documents.content.acceptance import TestedLengths, limit_lines
+from ulna.documents.content.parameters import Parameters
+from ulna.documents.content.quality import QualityRow
+from ulna.documents.content.readings import Lengths
+from ulna.documents.content.thinning import shown
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
-from ulna.documents.parameters import Parameters
 from ulna.documents.pdf.canvas import WIDTH_MM, axes_of, labels, svg_of
-from ulna.documents.quality import QualityRow
-from ulna.documents.readings import Lengths
-from ulna.documents.thinning import shown
 from ulna.ground.style import BLUE, GREEN, GREY, VERMILION
 
 MOST_LENGTHS = 1200

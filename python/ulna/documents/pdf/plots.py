@@ -7,13 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ulna.documents.clouds import Cloud
-from ulna.documents.distribution import Sample
+from ulna.documents.content.clouds import Cloud
+from ulna.documents.content.distribution import Sample
+from ulna.documents.content.readings import ReadingRows
+from ulna.documents.content.thinning import shown, shown_ranks
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf.canvas import HALF_MM, axes_of, labels, svg_of
-from ulna.documents.readings import ReadingRows
-from ulna.documents.thinning import shown, shown_ranks
 from ulna.ground.style import BLUE, VERMILION
 
 MOST_POINTS = 600

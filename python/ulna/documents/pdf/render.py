@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.languages import language_of
 from ulna.documents.languages.text import END, ISOLATE, Code, plain
 from ulna.documents.languages.words import Words, dictionary

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf import blocks

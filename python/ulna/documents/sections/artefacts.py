@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ulna.documents.artefacts import ArtefactRow
-from ulna.documents.content import Content
+from ulna.documents.content.artefacts import ArtefactRow
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Text, joined, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table

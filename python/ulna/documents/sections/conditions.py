@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ulna.documents.content import Content
-from ulna.documents.environment import Environment
+from ulna.documents.content.content import Content
+from ulna.documents.content.environment import Environment
 from ulna.documents.laboratory.file import Laboratory
 from ulna.documents.laboratory.tables import HumidityCondition, TemperatureCondition
 from ulna.documents.languages.text import Text, joined, named

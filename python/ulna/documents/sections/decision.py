@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ulna.documents.acceptance import Whole, wholes
-from ulna.documents.content import Content
+from ulna.documents.content.acceptance import Whole, wholes
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Tone, own

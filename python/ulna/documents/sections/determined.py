@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ulna.arm.directions import combination, sentence
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Heading, Paragraph, Table, own, table

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ulna.calibration.extras import JudgedExtra
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table

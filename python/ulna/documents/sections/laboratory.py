@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.laboratory.file import Laboratory
 from ulna.documents.laboratory.tables import Address, ContactTable, ItemTable, LaboratoryTable, MethodTable
 from ulna.documents.languages.text import Text, joined, named

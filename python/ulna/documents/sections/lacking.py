@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph
 

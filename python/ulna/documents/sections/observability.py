@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import named, number
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Drawing, Drawings, Heading, own, table

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Text, named, number
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 
 from ulna.arm.probes import ProbeView
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
+from ulna.documents.content.parameters import ParameterRow
 from ulna.documents.languages.text import NONE, Text, joined, named, number, styled
 from ulna.documents.languages.words import Words
-from ulna.documents.parameters import ParameterRow
 from ulna.documents.sections.blocks import Block, Heading, Paragraph, own, table
 from ulna.ground.digits import rounded, uncertainty
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ulna.artefacts.quantities import NAMES
 from ulna.calibration.placements import PlacementFigures, without_repeats
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Text, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Table, own

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ulna.documents.acceptance import Verification
-from ulna.documents.clouds import Cloud
-from ulna.documents.content import Content
-from ulna.documents.distribution import Sample
+from ulna.documents.content.acceptance import Verification
+from ulna.documents.content.clouds import Cloud
+from ulna.documents.content.content import Content
+from ulna.documents.content.distribution import Sample
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Drawing, Drawings, Paragraph, own

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from ulna.documents.content import Content
+from ulna.documents.content.content import Content
 from ulna.documents.languages.text import NONE, Code, Text, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Fact, Facts, Table, own, table

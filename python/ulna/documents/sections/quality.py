@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from ulna.documents.content import Content
-from ulna.documents.held_out import CAUTIONS
+from ulna.documents.content.content import Content
+from ulna.documents.content.held_out import CAUTIONS
+from ulna.documents.content.quality import QualityRow
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
-from ulna.documents.quality import QualityRow
 from ulna.documents.sections.blocks import Block, Paragraph, own, table
 from ulna.ground.digits import figure_mm
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ulna.documents.acceptance import Verification
+from ulna.documents.content.acceptance import Verification
 from ulna.documents.languages.text import NONE, Style, Text, joined, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source
 from ulna.formats.toml import check_format, read_json
 

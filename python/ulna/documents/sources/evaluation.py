@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError

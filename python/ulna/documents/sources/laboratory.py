@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ulna.documents.laboratory.file import Laboratory, load_laboratory
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source
 
 

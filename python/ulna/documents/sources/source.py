@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from ulna.calibration.result import Result
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 
 T = TypeVar("T")
 

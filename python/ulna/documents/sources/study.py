@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ulna.calibration.result import Result
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source, take
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import InputWarning, UlnaInputError

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source
 from ulna.formats.toml import read_bytes, sha256
 from ulna.verification.result_file import SourceTable, VerificationFile, load_verification

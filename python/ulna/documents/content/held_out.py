@@ -9,8 +9,8 @@ from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.figures import overall_figures
 from ulna.calibration.result import Result
-from ulna.documents.quality import QualityRow, quality_rows
-from ulna.documents.said import Said
+from ulna.documents.content.quality import QualityRow, quality_rows
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
 from ulna.study.file import rows_to_judge
 from ulna.study.study import Study

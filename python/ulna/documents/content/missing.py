@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ulna.documents.content import Content
-from ulna.documents.said import Said
+from ulna.documents.content.content import Content
+from ulna.documents.languages.said import Said
 
 
 def missing_parts(content: Content, no_study: Said | None, held_out: bool) -> dict[str, Said]:

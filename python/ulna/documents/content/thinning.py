@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]

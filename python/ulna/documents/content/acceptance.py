@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
 from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.result_file import TestedTable, VerificationFile

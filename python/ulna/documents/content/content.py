@@ -14,17 +14,17 @@ from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.summary import FitSummary
-from ulna.documents.acceptance import Verification
-from ulna.documents.artefacts import ArtefactRow
-from ulna.documents.clouds import Cloud, Quiver
-from ulna.documents.distribution import Sample
-from ulna.documents.environment import Environment
+from ulna.documents.content.acceptance import Verification
+from ulna.documents.content.artefacts import ArtefactRow
+from ulna.documents.content.clouds import Cloud, Quiver
+from ulna.documents.content.distribution import Sample
+from ulna.documents.content.environment import Environment
+from ulna.documents.content.parameters import Observability, Parameters
+from ulna.documents.content.provenance import Provenance
+from ulna.documents.content.quality import QualityRow
+from ulna.documents.content.readings import Lengths, ReadingRows
 from ulna.documents.laboratory.file import Laboratory
-from ulna.documents.parameters import Observability, Parameters
-from ulna.documents.provenance import Provenance
-from ulna.documents.quality import QualityRow
-from ulna.documents.readings import Lengths, ReadingRows
-from ulna.documents.said import Said
+from ulna.documents.languages.said import Said
 
 
 @dataclass(frozen=True)
