@@ -44,7 +44,7 @@ def arm() -> ulna.Arm:
     """The arm that the other benchmarks fit, at its start."""
     links = TRUTH[:24].reshape(6, 4)
     joints = [ulna.Joint(theta0, alpha, a, d) for theta0, alpha, a, d in links.tolist()]
-    there = ulna.Arm("benchmark", (*joints, ulna.Joint()), {"bent": ulna.Probe(*map(float, TRUTH[24:]))})
+    there = ulna.Arm("benchmark", (*joints, ulna.Joint()), {"bent": ulna.Probe(*TRUTH[24:27].tolist())})
     return there.with_parameters(START)
 
 

@@ -20,7 +20,7 @@ RENAMED: dict[str, tuple[str, ...]] = {
     "certificate.stated": ("documents.certified.parameters",),
     "cross_validate": ("calibration.cross_validate", "calibration.summary"),
     "document": (),
-    "document.content": ("documents.content",),
+    "document.content": ("documents.content.content",),
     "document.gather": ("documents.gather",),
     "document.html": (),
     "document.html.page": ("documents.html.page",),
