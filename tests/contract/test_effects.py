@@ -31,6 +31,7 @@ EXAMPLES: dict[str, list[Effects]] = {
     "compliance": [
         Effects(compliance_rad_per_nm=2e-6 * (k + 1), mass_kg=0.8, centre_mm=(0.0, 10.0, -60.0)) for k in range(7)
     ],
+    "backlash": [Effects(backlash_rad=1e-4 + 2e-5 * k) for k in range(7)],
 }
 
 #: how a simulation is told what the effect depends on, where there is something to tell

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ulna.arm.effects.effects import EFFECTS
 from ulna.ground.errors import UlnaInputError
 
 if TYPE_CHECKING:
-    from ulna.arm.effects.effects import EFFECTS
-from ulna.arm.tables import ArmFile
+    from ulna.arm.tables import ArmFile
 
 
 def check_modified(file: ArmFile, path: Path) -> None:

@@ -113,6 +113,10 @@ class Sphere(Surface):
         centre_mm = 0.5 * (true.diameter_mm + side * how.balls_mm[probe])[:, None] * outward
         return Touches(centre_mm, side * outward, probe, np.zeros(len(probe), np.int64))
 
+    def moved_by(self, touches: Touches) -> F64:
+        """The centre."""
+        return touches.off
+
     def written(self, artefact: Artefact, features_file: str) -> dict[str, Any]:
         """Its diameter, and the side that is touched."""
         return {"diameter": artefact.diameter_mm, "inside": artefact.inside}

@@ -114,7 +114,7 @@ def taken_rows(spec: PlanSpec, study: Study, arm: Arm, free: I64) -> F64:
             at = arm.core.tip(np.ascontiguousarray(group.q_rad[rows]), group.probe[rows])
             if len(np.unique(features[group.feature[rows]], axis=0)) == 1:
                 at = np.broadcast_to(at.mean(axis=0), at.shape)
-            elif group.artefact.kind == "bar":
+            elif np.linalg.matrix_rank(features - features.mean(axis=0), tol=1e-9) == 1:  # features in a line
                 line = np.linalg.svd(at - at.mean(axis=0))[2][0]
                 at = at.mean(axis=0) + ((at - at.mean(axis=0)) @ line)[:, None] * line
             parts.append(reduced(wj[None], w[None], at[None], group.artefact.frame == "free")[0])

@@ -28,7 +28,7 @@ class Touchable:
     outward: F64 | None = None
     """(K, 3) away from a surface, in the artefact's own frame; None for features."""
     unknowns: F64 | None = None
-    """(K, 3) what moves a surface's residuals beside the arm: its centre, or its plane."""
+    """(K, e) what moves a surface's residuals beside the arm: its centre, or its plane."""
 
     @property
     def pairs(self) -> bool:
@@ -49,8 +49,6 @@ def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
         return Touchable(at_mm, tuple(artefact.features), spec.touches)
     spread = touches_of(Touching(artefact, 1, spec.touches), artefact, arm, [probe])
     at_mm, outward = spread.centre_mm, spread.off
-    unknowns = outward
-    if artefact.kind == "plane":
-        unknowns = np.column_stack([np.ones(len(at_mm)), at_mm[:, :2] / np.abs(at_mm[:, :2]).max()])
+    unknowns = kind_of(artefact).moved_by(spread)
     names = tuple(str(number + 1) for number in range(len(at_mm)))
     return Touchable(at_mm, names, 1, outward, unknowns)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
+from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
 from ulna.planning.spec import PlanSpec
 from ulna.work.kept import each_once, sha256_of
@@ -50,22 +53,22 @@ def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Proble
     count, features, touches, n = q_rad.shape
     per = features * touches
     problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
-    artefact = spec.artefact
-    flat = np.ascontiguousarray(q_rad.reshape(-1, n))
-    probes = np.full(count * per, probe, dtype=np.int64)
-    standing = np.repeat(np.arange(count), per)
+    kind = kind_of(spec.artefact)
+    each = np.tile(np.repeat(np.arange(features), touches), count)
+    readings = Readings(
+        # as its certificate has it: what is uncertain of it is not what a plan can mend
+        artefact=replace(spec.artefact, u_mm=0.0, feature_u_mm=None, fitted=False),
+        q_rad=np.ascontiguousarray(q_rad.reshape(-1, n)),
+        p_rad=None,
+        length_mm=None,
+        probe=np.full(count * per, probe, dtype=np.int64),
+        feature=each if kind.named else np.zeros_like(each),
+        placement=Labels(np.repeat(np.arange(count), per), [str(number) for number in range(count)]),
+        row=np.arange(1, count * per + 1),
+        file=np.zeros(count * per, dtype=np.int64),
+    )
     balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
-    if artefact.kind == "sphere":
-        assert artefact.diameter_mm is not None
-        problem.add_sphere(
-            artefact.name, artefact.diameter_mm, balls_mm, flat, probes, standing, inside=artefact.inside
-        )
-    elif artefact.kind == "plane":
-        problem.add_plane(balls_mm, flat, probes, standing)
-    else:
-        points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
-        feature = np.tile(np.repeat(np.arange(features), touches), count)
-        problem.add_points(artefact.name, points_mm, artefact.frame, flat, probes, feature, standing)
+    kind.enter(problem, readings, balls_mm, [arm.conditions(len(readings))])
     return problem
 
 

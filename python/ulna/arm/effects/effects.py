@@ -15,6 +15,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from ulna.arm.conditions import Condition
+from ulna.arm.effects.backlash import BacklashOfJoint
 from ulna.arm.effects.compliance import ComplianceOfJoint
 from ulna.arm.effects.effect import Effect, Row
 from ulna.arm.effects.expansion import ExpansionOfJoint
@@ -26,6 +27,7 @@ from ulna.ground.errors import UlnaInputError, nearest
 @dataclass(frozen=True)
 class Effects(
     # a row each; dataclasses take the fields of the last one first
+    BacklashOfJoint,
     ComplianceOfJoint,
     ExpansionOfJoint,
     HarmonicsOfJoint,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
+from ulna.artefacts.kinds import kind_of
 from ulna.cli.printed.tables import table
 from ulna.simulation.simulate import Simulated
 
@@ -13,7 +14,9 @@ def simulation_report(simulated: Simulated) -> list[RenderableType]:
     rows = []
     for group, true in zip(simulated.study.readings, simulated.truth.touchings, strict=True):
         artefact, really = group.artefact, true.artefact
-        off_mm = (really.length_mm or really.diameter_mm or 0.0) - (artefact.length_mm or artefact.diameter_mm or 0.0)
+        kind = kind_of(artefact)
+        stated = next((own for own in kind.dimensions(artefact) if own.u), None)
+        off = {own.name: own.value for own in kind.dimensions(really)}
         rows.append(
             (
                 artefact.name,
@@ -21,7 +24,7 @@ def simulation_report(simulated: Simulated) -> list[RenderableType]:
                 str(len(true.standings.origin_mm)),
                 str(len(group)),
                 str(int(true.missed.sum())),
-                f"{off_mm:+.4f}" if artefact.u_mm and artefact.kind != "points" else "–",
+                "–" if stated is None else f"{off[stated.name] - stated.value:+.4f}",
             )
         )
     heads = ("artefact", "kind", "placements", "readings", "missed", "true − stated / mm")

@@ -10,6 +10,7 @@ import polars as pl
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from ulna.artefacts.kinds import KINDS
 from ulna.calibration.placements import PlacementFigures
 
 F64 = NDArray[np.float64]
@@ -51,7 +52,7 @@ def samples(residuals: pl.DataFrame, placements: Sequence[PlacementFigures]) -> 
     for (artefact,), rows in residuals.group_by("artefact", maintain_order=True):
         name = str(artefact)
         own = [entry for entry in placements if entry.artefact == name]
-        if own and all(entry.kind == "bar" and entry.readings == 2 for entry in own):
+        if own and all(KINDS[entry.kind].indivisible and entry.readings == 2 for entry in own):
             lengths = [entry.figures.get("length_error_mean_mm") for entry in own]
             values = [value for value in lengths if value is not None]
             found.append(_sample(name, "length", np.array(values)))

@@ -11,6 +11,7 @@ import polars as pl
 
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.features import uncertainties
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.formats.header import Header
 from ulna.formats.units import Units
@@ -23,7 +24,7 @@ Place = tuple[float, float, float]
 
 def has_own_points(artefact: Artefact) -> bool:
     """Whether the readings of an artefact bring its features with them."""
-    return artefact.kind == "points" and not artefact.features
+    return kind_of(artefact).features_file and not artefact.features
 
 
 def own_points(
