@@ -45,7 +45,7 @@ def task_of(kind: str, feature: list[int], q_rad: np.ndarray, **more: object) ->
 
 
 def poses(count: int, seed: int) -> np.ndarray:
-    return true_arm(SEVEN).poses(count, np.random.default_rng(seed))
+    return true_arm(SEVEN).anywhere(count, np.random.default_rng(seed))
 
 
 def test_a_ball_is_the_least_squares_sphere() -> None:
