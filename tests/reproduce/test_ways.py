@@ -150,7 +150,7 @@ def test_what_is_out_of_reach_is_told():
     truth = true_arm(SEVEN)
     with pytest.raises(ValueError, match="out of the virtual arm's reach"):
         truth.touch(np.array([[5000.0, 0.0, 0.0]]), 1, np.random.default_rng(1))
-    with pytest.raises(ValueError, match="only 0 of 2 places"):
+    with pytest.raises(UlnaInputError, match="only 0 of 2 places"):
         truth.places(np.array([[0.0, 0, 0], [9000.0, 0, 0]]), 2, np.random.default_rng(1))
 
 
