@@ -44,9 +44,9 @@ fn an_arm_names_and_carries_every_parameter() {
         assert_eq!(effect.joints(), JOINTS);
         assert_eq!(arm.parameters()[first..first + count], *effect.values(), "{}", effect.kind());
         assert!(units[first..first + count].iter().all(|unit| *unit == effect.unit()));
-        for j in first..first + count {
+        for (j, name) in names.iter().enumerate().skip(first).take(count) {
             let joint = arm.joint_of(j).unwrap() + 1;
-            assert!(names[j].starts_with(&format!("joint.{joint}.")), "{}", names[j]);
+            assert!(name.starts_with(&format!("joint.{joint}.")), "{name}");
         }
         first += count;
     }
@@ -64,13 +64,13 @@ fn no_parameter_moves_the_tip_by_much_more_than_it_says() {
     let arm = any_arm(&mut rng(1), JOINTS).with_effects(all_effects()).unwrap();
     let reach = arm.reach_mm(0);
     let (q_rad, told) = (angles(&mut rng(2), JOINTS * 200), Told::any(&mut rng(3), 200, 1, JOINTS));
-    let moves = arm.moves_mm(reach);
-    for j in arm.geometry_count()..arm.parameter_count() {
+    let names = arm.parameter_names();
+    for (j, moves_mm) in arm.moves_mm(reach).into_iter().enumerate().skip(arm.geometry_count()) {
         let of_pose = |row| jacobian(&arm, 0, told.at(&q_rad).pose(row, JOINTS)).column(j).norm();
         let most = (0..200).map(of_pose).fold(0.0, f64::max);
-        assert!(most <= 2.0 * moves[j], "{}: {most} of {}", arm.parameter_names()[j], moves[j]);
+        assert!(most <= 2.0 * moves_mm, "{}: {most} of {moves_mm}", names[j]);
         // the last axes are as near to the tip as the probe is short, and carry next to nothing
-        assert!(most >= 1e-4 * moves[j], "{}: {most} of {}", arm.parameter_names()[j], moves[j]);
+        assert!(most >= 1e-4 * moves_mm, "{}: {most} of {moves_mm}", names[j]);
     }
 }
 
