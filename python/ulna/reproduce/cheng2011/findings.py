@@ -19,7 +19,7 @@ PAPERS_LIMIT_RAD = 0.1
 
 USUALLY = 0.75
 """Share of repeats in which all ten bars must stay within the rated accuracy. The true arm has 0.98, calibrated ones
-0.85 and 0.93: the noise of one bar is a third of the limit, and a calibration adds to it."""
+0.91 and 0.84: the noise of one bar is a third of the limit, and a calibration adds to it."""
 
 
 @dataclass(frozen=True)
