@@ -67,3 +67,15 @@ def test_verification_1() -> None:
             assert ours.keys() == theirs.keys()
             assert ours["value"] == pytest.approx(theirs["value"], abs=1e-10)
             assert (ours["verdict"], ours["formula"]) == (theirs["verdict"], theirs["formula"])
+
+
+def test_verification_1_is_written_in_its_order() -> None:
+    """Keys stand as in the fossil, which a reader of the text may count on."""
+
+    def order(value: object) -> object:
+        if isinstance(value, dict):
+            return [(key, order(inner)) for key, inner in value.items()]
+        return [order(inner) for inner in value] if isinstance(value, list) else None
+
+    document = json.loads((FOSSILS / "verification-1.json").read_text(encoding="utf-8"))
+    assert order(ulna.verify(FOSSILS / "verify-1.toml").as_dict()) == order(document)

@@ -168,10 +168,12 @@ class SourceTable(Written):
     sha256: str
 
 
-class TouchesTable(SourceTable):
+class TouchesTable(Written):
     """A file of touches."""
 
     state: State
+    path: str
+    sha256: str
     rows: int
     points: Literal["encoders", "xyz"]
     """What the rows are: encoder readings, or coordinates."""

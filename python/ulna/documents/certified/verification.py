@@ -32,7 +32,8 @@ def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -
         raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
     made, stated = file.provenance, file.environment.temperature
     own = [each for each in made.files if each.state == state.state]
-    files = [(path.name, digest), *((each.path, each.sha256) for each in (made.plan, *made.arms, *own))]
+    used = [(each.path, each.sha256) for each in (made.plan, *made.arms)]
+    files = [(path.name, digest), *used, *((each.path, each.sha256) for each in own)]
     return StatedTests(
         profile=file.profile.name,
         state=state.state,
