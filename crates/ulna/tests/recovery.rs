@@ -13,7 +13,7 @@ use ulna::artefacts::{KINDS, Noise, Rows, Size, Stated};
 use ulna::fit::calibrate::{Options, fit};
 use ulna::fit::monte_carlo::{Repeat, recalibrate};
 use ulna::kinematics::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{Angles, tip_mm};
+use ulna::kinematics::{Angles, Conditions, tip_mm};
 use ulna::monitor::Unwatched;
 use ulna::problem::Problem;
 
@@ -77,8 +77,10 @@ fn touch(truth: &Arm, points: &[Vector3<f64>], rng: &mut Xoshiro256PlusPlus) -> 
     let limits = Limits { range_rad: vec![(-3.0, 3.0); 7] };
     loop {
         let place: Point3<f64> = tip_mm(truth, 0, &anywhere(rng));
-        let postures: Option<Vec<Vec<f64>>> =
-            points.iter().map(|at| posture_for_point(truth, 0, place + at, &limits, 20, rng)).collect();
+        let postures: Option<Vec<Vec<f64>>> = points
+            .iter()
+            .map(|at| posture_for_point(truth, 0, (place + at, Conditions::default()), &limits, 20, rng))
+            .collect();
         if let Some(postures) = postures {
             return postures.into_iter().flatten().collect();
         }
@@ -94,7 +96,13 @@ fn lengths(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
         p_rad.extend(p);
     }
     let poses = Angles::cold(&q_rad);
-    let rows = Rows { poses, probe: &[0; 150], p_rad: Some(&p_rad), measured_mm: Some(&lengths_mm), ..Rows::default() };
+    let rows = Rows {
+        poses,
+        probe: &[0; 150],
+        second: Some(Angles::cold(&p_rad)),
+        measured_mm: Some(&lengths_mm),
+        ..Rows::default()
+    };
     problem.add("length", &Stated { name: "pairs", ..Stated::default() }, &rows).unwrap();
 }
 

@@ -9,6 +9,7 @@ use super::rows::{Eliminated, Layout, MOST_OWN, Place};
 use super::tile::{Directions, TILE, Tile};
 use super::touches::Touches;
 use super::writer::Writer;
+use crate::arm::Seen;
 use crate::error::Result;
 use crate::kinematics::Sample;
 use nalgebra::{DMatrix, Vector3};
@@ -259,8 +260,8 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         self.group.touches.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.group.touches.poses.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.group.touches.poses.seen()
     }
 
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {

@@ -82,12 +82,24 @@ pub(crate) fn judge(
     parameters: &[f64],
     monitor: &dyn Monitor,
 ) -> Result<Judged> {
+    let (triangle, natural_scale) = triangle_at(problem, free, parameters, monitor)?;
+    let (decomposition, symmetries) = decompose(problem, free, pins, parameters, &triangle, &natural_scale);
+    Ok(Judged { triangle, decomposition, symmetries })
+}
+
+/// The triangle of all rows at some parameters, the considered dimensions behind the free ones; and the free ones' natural
+/// scale.
+pub(crate) fn triangle_at(
+    problem: &Problem,
+    free: &[usize],
+    parameters: &[f64],
+    monitor: &dyn Monitor,
+) -> Result<(Triangle, Vec<f64>)> {
     let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
-    let mut assembly = Assembly::new(problem, free, pins, monitor);
+    let mut assembly = Assembly::new(problem, free, &[], monitor);
     let mut triangle = Triangle::new(free.len() + assembly.considered());
     assembly.considered_rows(&x, &mut triangle)?;
-    let (decomposition, symmetries) = decompose(problem, free, pins, parameters, &triangle, assembly.natural_scale());
-    Ok(Judged { triangle, decomposition, symmetries })
+    Ok((triangle, assembly.natural_scale().to_vec()))
 }
 
 /// The decomposition with everything taken out that is pinned, as it is at these parameters: a symmetry goes with the
@@ -199,7 +211,7 @@ fn identifiability(
             start: problem.arm(),
             pins,
             symmetries: &judged.symmetries,
-            known,
+            known: &problem.known(known.length_mm, known.angle_rad),
             sigma,
         },
     )

@@ -3,7 +3,7 @@
 use crate::arm::Arm;
 use crate::artefacts::Weighing;
 use crate::error::{Error, Result};
-use crate::fit::calibrate::{Options, fit_from, judge};
+use crate::fit::calibrate::{Options, fit_from, judge, triangle_at};
 use crate::fit::solve::prepare;
 use crate::identify::families::pins;
 use crate::monitor::{Monitor, Stage, Unwatched};
@@ -12,6 +12,7 @@ use crate::problem::assembly::Assembly;
 use crate::problem::pins::Pin;
 use crate::seeds::mix;
 use crate::solver::covariance::covariance;
+use crate::solver::full_rank::FullRank;
 use crate::solver::lm::{self, Report, minimize};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -155,15 +156,29 @@ fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Res
 
 /// Standard uncertainty of every parameter; NaN where held or not determined.
 fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[f64]) -> Result<Vec<f64>> {
-    let judged = judge(problem, free, pins, parameters, &Unwatched)?;
+    let (triangle, natural_scale) = triangle_at(problem, free, parameters, &Unwatched)?;
     let considered = problem.considered_u(free);
-    let covariance = covariance(&judged.decomposition, &judged.triangle, 1.0, &considered);
-    let lost = judged.decomposition.lost();
+    let inverse = if pins.is_empty() { FullRank::of(&triangle, free.len(), &natural_scale) } else { None };
+    let variances = match inverse {
+        Some(inverse) => inverse.variances_considering(&triangle, &considered),
+        None => judged_variances(problem, free, pins, parameters, &considered)?,
+    };
     let mut u = vec![f64::NAN; parameters.len()];
-    for (unknown, &j) in free.iter().enumerate() {
-        if !lost[unknown] {
-            u[j] = covariance[unknown * free.len() + unknown].sqrt();
-        }
-    }
+    free.iter().zip(variances).for_each(|(&j, variance)| u[j] = variance.sqrt());
     Ok(u)
+}
+
+/// The variances of the free parameters from singular values; NaN where not determined.
+fn judged_variances(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    parameters: &[f64],
+    considered: &[f64],
+) -> Result<Vec<f64>> {
+    let judged = judge(problem, free, pins, parameters, &Unwatched)?;
+    let covariance = covariance(&judged.decomposition, &judged.triangle, 1.0, considered);
+    let lost = judged.decomposition.lost();
+    let variance = |unknown: usize| if lost[unknown] { f64::NAN } else { covariance[unknown * (free.len() + 1)] };
+    Ok((0..free.len()).map(variance).collect())
 }

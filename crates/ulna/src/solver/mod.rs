@@ -6,6 +6,7 @@
 
 pub mod covariance;
 pub mod decomposition;
+pub mod full_rank;
 pub mod gram;
 pub mod lm;
 pub mod losses;
