@@ -1,4 +1,4 @@
-"""Touches of balls and flats: ranks, exact recovery, SciPy's optimum, intervals that hold the truth."""
+"""Touches of balls, cylinders and flats: ranks, exact recovery, SciPy's optimum, intervals that hold the truth."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ from tests.oracle import fits, virtual
 from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_2, table_4
+from tests.oracle.surfaces import Cylinder
 
 import ulna._core as _core
 
@@ -24,8 +25,19 @@ def hollow(arm, rng):
     return [virtual.spheres(arm, rng, 8, 24, inside=True)]
 
 
-#: flats take long to make, since many places are out of reach: once for each arm
-FLATS = {}
+#: flats and cylinders take long to make, since many places are out of reach: once for each arm
+FLATS, CYLINDERS = {}, {}
+
+
+def cylinder(arm, rng, inside=False):
+    key = (*arm.parameters, inside)
+    made = CYLINDERS.get(key) or virtual.cylinders(arm, np.random.default_rng(11), 8, 24, inside=inside)
+    CYLINDERS[key] = made
+    return [made]
+
+
+def bore(arm, rng):
+    return cylinder(arm, rng, inside=True)
 
 
 def flat(arm, rng):
@@ -50,6 +62,9 @@ TABLE = [
     (ball, 40.0, 25),
     (ball, 0.0, 23),
     (hollow, 40.0, 25),
+    (cylinder, 40.0, 25),
+    (cylinder, 0.0, 23),
+    (bore, 40.0, 25),
     (flat, 40.0, 24),
     (flat, 0.0, 22),
     (flat_and_bar, 40.0, 25),
@@ -70,7 +85,7 @@ def test_ranks_are_those_of_the_oracle(row):
     )
 
 
-@pytest.mark.parametrize("readings", [ball, hollow, flat_and_bar])
+@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, flat_and_bar])
 def test_exact_touches_give_the_truth(readings):
     truth, rng = table_4(), np.random.default_rng(2)
     groups = readings(truth, rng)
@@ -83,7 +98,7 @@ def test_exact_touches_give_the_truth(readings):
 
 
 @pytest.mark.parametrize("noise", [None, STATED], ids=["unweighted", "weighted"])
-@pytest.mark.parametrize("readings", [ball, hollow, flat, one_flat, flat_and_bar])
+@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, flat, one_flat, flat_and_bar])
 def test_optimum_and_covariance_are_scipys(readings, noise):
     rng = np.random.default_rng(3)
     truth = table_4()
@@ -109,9 +124,9 @@ def test_optimum_and_covariance_are_scipys(readings, noise):
     assert found.observations == sum(len(g.residuals(truth, g.unknowns(truth))) for g in groups)
 
 
-@pytest.mark.parametrize("readings", [ball, hollow, flat])
+@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, flat])
 def test_residuals_are_distances_from_the_surface(readings):
-    """Positive outside of a ball and of a hollow's wall, and on the side of a flat that the arm's base is on."""
+    """Positive outside of what is round and of a hollow's wall, and on the side of a flat that the arm's base is on."""
     truth, rng = table_4(), np.random.default_rng(4)
     (group,) = readings(truth, rng)
     if readings is flat:
@@ -128,13 +143,15 @@ def diameter_problem(truth, group, start, stated, u_mm, fitted):
     problem = _core.Problem(core_arm(start), stated.encoder_rad, stated.seat_mm)
     rows = {"q_rad": group.q_rad, "probe": np.zeros(len(group.q_rad), np.int64), "placement": group.placement}
     diameter = [("diameter", group.diameter_mm, u_mm, fitted)]
-    problem.add("sphere", "ball", dimensions=diameter, balls_mm=group.balls_mm, **rows)
+    kind = "cylinder" if isinstance(group, Cylinder) else "sphere"
+    problem.add(kind, "ball", dimensions=diameter, balls_mm=group.balls_mm, **rows)
     return problem
 
 
-def test_a_ball_of_unknown_diameter_knows_no_scale():
+@pytest.mark.parametrize("readings", [ball, cylinder])
+def test_what_is_round_and_of_unknown_diameter_knows_no_scale(readings):
     truth = table_2(r_mm=40.0)
-    (group,) = ball(truth, np.random.default_rng(5))
+    (group,) = readings(truth, np.random.default_rng(5))
     problem = diameter_problem(truth, group, truth, STATED, 0.0, True)
     assert problem.parameter_names[-1] == "artefact.ball.diameter"
     found = _core.identify(problem, np.zeros(28, bool))
@@ -144,22 +161,25 @@ def test_a_ball_of_unknown_diameter_knows_no_scale():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["held", "considered", "fitted", "flat and bar"])
+@pytest.mark.parametrize(
+    "case", ["held", "considered", "fitted", "cylinder held", "cylinder considered", "cylinder fitted", "flat and bar"]
+)
 def test_intervals_hold_the_truth(case):
-    """1000 simulated calibrations each: a ball's diameter exact, uncertain, fitted within; flats beside a bar."""
+    """1000 simulated calibrations each: a diameter exact, uncertain, fitted within; flats beside a bar."""
     truth, rng = table_2(r_mm=40.0), np.random.default_rng(6)
     if case == "flat and bar":
         problem = core_problem(truth, flat_and_bar(truth, rng), STATED)
     else:
-        (group,) = ball(truth, rng)
-        u_mm = 0.0 if case == "held" else 0.01
-        problem = diameter_problem(truth, group, truth, STATED, u_mm, case == "fitted")
+        *of, known = case.split()
+        (group,) = (cylinder if of else ball)(truth, rng)
+        u_mm = 0.0 if known == "held" else 0.01
+        problem = diameter_problem(truth, group, truth, STATED, u_mm, known == "fitted")
     parameters = len(problem.parameter_names)
     values, u, converged = _core.recalibrate(problem, np.zeros(parameters, bool), core_arm(truth), 1000, 1, 2)
     assert converged.all()
     determined = np.isfinite(u).all(axis=0)
     assert determined.sum() == parameters - 2
-    truths = np.append(truth.parameters, 50.0)[:parameters]
+    truths = np.append(truth.parameters, 60.0 if "cylinder" in case else 50.0)[:parameters]
     held = (abs(values - truths) < NORMAL_95 * u)[:, determined].mean(axis=0)
     assert held.min() > 0.925, held
     assert held.max() < 0.975, held

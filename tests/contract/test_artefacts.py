@@ -31,6 +31,7 @@ EXAMPLES: dict[str, str] = {
     "length": "length = 300.0\nu = 0.001\nplacements = 40",
     "sphere": "diameter = 25.0\nu = 0.002",
     "plane": "size = [150, 150]",
+    "cylinder": "diameter = 60.0\nu = 0.002",
 }
 
 #: what may be left to the general answer

@@ -10,7 +10,7 @@ from .chain import Chain
 from .effects import Affected
 from .fits import Groups, Noise
 from .observed import Lengths, Points
-from .surfaces import Plane, Sphere
+from .surfaces import Cylinder, Plane, Sphere
 
 COMPLIANCE = ("compliance_rad_per_nm", "masses_kg", "centres_mm", "gravity")
 
@@ -49,10 +49,11 @@ def core_problem(arm: Chain | Affected, groups: Groups, noise: Noise | None = No
             of = {"features_mm": group.features_mm, "frame": "free" if group.placed else "arm"}
             of |= {"feature": group.feature.astype(np.int64), "placement": group.placement.astype(np.int64)}
             index = problem.add("points", f"points {number}", q_rad=q_rad, probe=probe, **conditions, **of)
-        elif isinstance(group, Sphere):
+        elif isinstance(group, Sphere | Cylinder):
+            kind = "sphere" if isinstance(group, Sphere) else "cylinder"
             of = {"dimensions": [("diameter", group.diameter_mm, 0.0, False)], "inside": group.inside}
             of |= {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
-            index = problem.add("sphere", f"ball {number}", q_rad=q_rad, probe=probe, **conditions, **of)
+            index = problem.add(kind, f"{kind} {number}", q_rad=q_rad, probe=probe, **conditions, **of)
         elif isinstance(group, Plane):
             of = {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
             index = problem.add("plane", f"flat {number}", q_rad=q_rad, probe=probe, **conditions, **of)

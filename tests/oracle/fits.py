@@ -9,9 +9,9 @@ from scipy.optimize import least_squares
 
 from .chain import Array, Chain
 from .observed import Lengths, Points, stack
-from .surfaces import Plane, Sphere
+from .surfaces import Surface
 
-Groups = Sequence[Lengths | Points | Sphere | Plane]
+Groups = Sequence[Lengths | Points | Surface]
 
 
 @dataclass(frozen=True)

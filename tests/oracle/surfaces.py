@@ -1,6 +1,6 @@
 """Touches of surfaces: distances from a ball or a flat whose place is an explicit unknown."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,7 +119,81 @@ class Plane:
         return _covariance(self, arm, encoder_rad, seat_mm)
 
 
-def _jacobian(surface: Sphere | Plane, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class Cylinder:
+    """Touches of a shaft of (or bore with) a diameter, mm; unknown: two tilts and two shifts of the axis from where it
+    seemed to be."""
+
+    diameter_mm: float
+    balls_mm: Array
+    q_rad: Array
+    placement: Index
+    along: Array  # (placements, 3) unit vectors, roughly
+    through_mm: Array  # (placements, 3) a point of each axis, roughly
+    probe: int | Index = 0
+    inside: bool = False
+
+    @property
+    def radius_mm(self) -> Array:
+        """(N,) of the cylinder that the tip moves on."""
+        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
+        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
+
+    def unknowns(self, start: Chain) -> Array:
+        tips = start.tip(self.q_rad, self.probe)
+        rows = []
+        for number in range(len(self.along)):
+            here = self.placement == number
+            one = replace(
+                self,
+                q_rad=self.q_rad[here],
+                placement=np.zeros(here.sum(), int),
+                along=self.along[number : number + 1],
+                through_mm=self.through_mm[number : number + 1],
+                probe=np.broadcast_to(self.probe, (len(self.q_rad),))[here],
+            )
+            found = least_squares(
+                lambda x, cylinder=one, p=tips[here]: cylinder._off(p, x),
+                np.zeros(4),
+                x_scale=[1e-2, 1e-2, 1.0, 1.0],
+                xtol=1e-15,
+                ftol=1e-15,
+                gtol=1e-15,
+            )
+            rows.append(found.x)
+        return np.concatenate(rows)
+
+    def _away(self, tips: NDArray, unknowns: NDArray) -> NDArray:
+        """(N, 3) from the axis to the tip."""
+        four = unknowns.reshape(-1, 4)
+        across = np.stack([np.linalg.svd(along[None])[2][1:] for along in self.along])
+        turned = self.along + np.einsum("pk,pkj->pj", four[:, :2], across)
+        turned = turned / np.sqrt((turned**2).sum(axis=1, keepdims=True))
+        at = self.through_mm + np.einsum("pk,pkj->pj", four[:, 2:], across)
+        arm, along = tips - at[self.placement], turned[self.placement]
+        return arm - (arm * along).sum(axis=1, keepdims=True) * along
+
+    def _off(self, tips: NDArray, unknowns: NDArray) -> NDArray:
+        return np.sqrt((self._away(tips, unknowns) ** 2).sum(axis=1)) - self.radius_mm
+
+    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
+        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
+
+    def normals(self, arm: Chain, unknowns: Array) -> Array:
+        away = self._away(arm.tip(self.q_rad, self.probe), unknowns)
+        return away / np.linalg.norm(away, axis=1, keepdims=True)
+
+    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+        return _jacobian(self, arm, unknowns)
+
+    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+        return _covariance(self, arm, encoder_rad, seat_mm)
+
+
+Surface = Sphere | Plane | Cylinder
+
+
+def _jacobian(surface: Surface, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
     of_arm = np.einsum("ni,nik->nk", surface.normals(arm, unknowns), arm.jacobian(surface.q_rad, surface.probe))
     tips = arm.tip(surface.q_rad, surface.probe)
     columns = np.zeros((len(tips), len(unknowns)))
@@ -130,7 +204,7 @@ def _jacobian(surface: Sphere | Plane, arm: Chain, unknowns: Array) -> tuple[Arr
     return of_arm, columns
 
 
-def _covariance(surface: Sphere | Plane, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+def _covariance(surface: Surface, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
     """(N, 1, 1) of a distance, mm²: what of a touch's error is across the surface."""
     normals = surface.normals(arm, surface.unknowns(arm))
     j = np.einsum("ni,nik->nk", normals, arm.encoder_jacobian(surface.q_rad, surface.probe))

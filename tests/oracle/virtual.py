@@ -6,7 +6,7 @@ import numpy as np
 
 from .chain import Array, Chain
 from .observed import Lengths, Points
-from .surfaces import Plane, Sphere
+from .surfaces import Cylinder, Plane, Sphere
 
 #: Travel of every joint of the virtual arms, rad.
 TRAVEL_RAD = np.pi
@@ -195,3 +195,32 @@ def planes(
     assert len(stands) >= count
     q = touches.touch(arm, np.concatenate(stands[:count]), rng)
     return Plane(np.full(arm.probes, ball_mm), q, np.repeat(np.arange(count), each), np.stack(normals[:count]))
+
+
+def cylinders(
+    arm: Chain,
+    rng: np.random.Generator,
+    count: int,
+    each: int,
+    diameter_mm: float = 60.0,
+    ball_mm: float = 6.0,
+    touches: Touches = EXACT,
+    inside: bool = False,
+) -> Cylinder:
+    """A shaft or bore of 200 mm in ``count`` places, touched ``each`` times all around with the ball of probe 0."""
+    radius = 0.5 * (diameter_mm - ball_mm if inside else diameter_mm + ball_mm)
+    stands, along, through = [], [], []
+    for where in random_points(arm, rng, 3 * count):
+        turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+        angle, height = rng.uniform(-np.pi, np.pi, 2 * each), rng.uniform(-100, 100, 2 * each)
+        spots = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height]) @ turn.T + where
+        reached = np.isfinite(try_poses(arm, spots, rng)).all(axis=1)
+        if reached.sum() >= each:
+            stands.append(spots[reached][:each])
+            along.append(turn[:, 2])
+            through.append(where)
+    assert len(stands) >= count
+    q = touches.touch(arm, np.concatenate(stands[:count]), rng)
+    placement, balls_mm = np.repeat(np.arange(count), each), np.full(arm.probes, ball_mm)
+    stood = (np.stack(along[:count]), np.stack(through[:count]))
+    return Cylinder(diameter_mm, balls_mm, q, placement, *stood, inside=inside)

@@ -35,6 +35,7 @@ FIXED = replace(PLATE, features={"a": (500.0, 100.0, 300.0), "b": (300.0, -350.0
 SPHERE = Artefact("ball", "sphere", {}, diameter_mm=30.0)
 HOLLOW = replace(SPHERE, inside=True)
 PLANE = Artefact("flat", "plane", {})
+BORE = Artefact("bore", "cylinder", {}, diameter_mm=40.0, inside=True)
 
 
 def limited() -> ulna.Arm:
@@ -63,6 +64,7 @@ def spec(artefact: Artefact = BAR, **others: object) -> PlanSpec:
         (SPHERE, 9, 6),
         (HOLLOW, 9, 6),
         (PLANE, 7, 4),
+        (BORE, 12, 8),
     ],
 )
 def test_the_rows_of_measurements_say_what_the_fit_says_of_them(artefact: Artefact, touches: int, rows: int) -> None:

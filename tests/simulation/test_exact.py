@@ -20,8 +20,9 @@ from ulna.simulation.file import load_simulation
 def test_the_geometry_is_exact(tmp_path: Path) -> None:
     hollow = '[artefact.hollow]\nkind = "sphere"\ndiameter = 40.0\ninside = true\nu = 0.01\n'
     table = '[artefact.table]\nkind = "plane"\nsize = [120.0, 50.0]\n'
+    bore = '[artefact.bore]\nkind = "cylinder"\ndiameter = 50.0\ninside = true\nheight = 80.0\n'
     rows = '[artefact.rows]\nkind = "length"\nlength = 150.0\nu = 0.01\n'
-    simulated, study = saved(write(tmp_path, BAR + PLATE + BALL + hollow + table + rows, 'drawing = "exact"'))
+    simulated, study = saved(write(tmp_path, BAR + PLATE + BALL + hollow + table + bore + rows, 'drawing = "exact"'))
     account = json.loads((tmp_path / "out" / "truth.json").read_text())
     true = {entry["artefact"]: entry for entry in account["artefacts"]}
     tip_mm = {group.artefact.name: simulated.truth.arm.tip(group.q_rad) for group in study.readings}
@@ -36,6 +37,11 @@ def test_the_geometry_is_exact(tmp_path: Path) -> None:
     assert np.linalg.det(axes) == pytest.approx(1.0)
     features_mm = np.array(list(true["plate"]["features_mm"].values()))
     assert tip_mm["plate"].reshape(5, 4, 3) == pytest.approx(origin_mm[:, None] + features_mm @ axes, abs=1e-8)
+
+    origin_mm, axes = standing(account, "bore")
+    own_mm = np.einsum("prk,pjk->prj", tip_mm["bore"].reshape(5, 20, 3) - origin_mm[:, None], axes)
+    assert np.linalg.norm(own_mm[..., :2], axis=2) == pytest.approx(true["bore"]["diameter_mm"] / 2 - 3.0, abs=1e-8)
+    assert 75.0 < np.ptp(own_mm[..., 2]) < 80.0
 
     for name, apart_mm in (("ball", 3.0), ("hollow", -3.0)):
         origin_mm, axes = standing(account, name)

@@ -2,7 +2,7 @@
 //!
 //! Nanoseconds of a touch, one thread: residuals and derivatives of all 27 parameters, the placement eliminated, as in
 //! every iteration of a fit. The arm and the timing are those of `bench`. A bar has its two ends touched in each place;
-//! a plate nine balls; a sphere, a plane and a seat are touched 20 times each. Effects are timed on the bars.
+//! a plate nine balls; a seat and every surface are touched 20 times each. Effects are timed on the bars.
 
 mod shared;
 
@@ -60,6 +60,15 @@ fn seat(_: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
 
 fn sphere(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
     (0..20).map(|_| (direction(rng).map(|x| 0.5 * (SPHERE_MM + BALL_MM) * x), 0)).collect()
+}
+
+fn cylinder(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    let around = |rng: &mut Xoshiro256PlusPlus| {
+        let (sin, cos) = rng.random_range(-PI..PI).sin_cos();
+        let apart = 0.5 * (SPHERE_MM + BALL_MM);
+        ([apart * cos, apart * sin, rng.random_range(-100.0..100.0)], 0)
+    };
+    (0..20).map(|_| around(rng)).collect()
 }
 
 fn plane(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
@@ -134,10 +143,11 @@ fn main() {
     costs.push(("bar", cost(&mut of(&truth, &bars, "points", &ends), bars.feature.len())));
     let (plate_mm, ball) = (plate_mm(), Stated { name: "ball", balls_mm: Some(&[BALL_MM]), ..Stated::default() });
     let diameter = [Size { name: "diameter", value: SPHERE_MM, u: 0.0, fitted: false }];
-    let kinds: [(&str, Standing, &str, Stated); 4] = [
+    let kinds: [(&str, Standing, &str, Stated); 5] = [
         ("plate", plate, "points", points(&plate_mm)),
         ("seat", seat, "points", points(&[[0.0; 3]])),
         ("sphere", sphere, "sphere", Stated { dimensions: &diameter, ..ball }),
+        ("cylinder", cylinder, "cylinder", Stated { dimensions: &diameter, ..ball }),
         ("plane", plane, "plane", ball),
     ];
     for (name, standing, kind, stated) in kinds {

@@ -25,6 +25,7 @@ const TAKEN: &[(&str, &str, Taking)] = &[
     ("length", "pairs of poses", lengths),
     ("points", "a plate", plate),
     ("sphere", "a ball", |problem, truth, rng| surface(problem, truth, rng, ("sphere", 50.0), &round)),
+    ("cylinder", "a shaft", |problem, truth, rng| surface(problem, truth, rng, ("cylinder", 60.0), &shaft)),
     ("plane", "a flat", |problem, truth, rng| surface(problem, truth, rng, ("plane", 0.0), &flat)),
 ];
 
@@ -130,6 +131,15 @@ type Standing = dyn Fn(f64, &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>>;
 
 fn round(diameter_mm: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
     (0..20).map(|_| direction(rng) * (0.5 * (diameter_mm + BALL_MM))).collect()
+}
+
+fn shaft(diameter_mm: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
+    let turn = nalgebra::Rotation3::new(direction(rng) * 2.0);
+    let around = |rng: &mut Xoshiro256PlusPlus| {
+        let (sin, cos) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
+        Vector3::new(cos, sin, 0.0) * (0.5 * (diameter_mm + BALL_MM)) + Vector3::z() * rng.random_range(-100.0..100.0)
+    };
+    (0..20).map(|_| turn * around(rng)).collect()
 }
 
 fn flat(_: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.bar import Bar
+from ulna.artefacts.cylinder import Cylinder
 from ulna.artefacts.kind import Kind
 from ulna.artefacts.length import Length
 from ulna.artefacts.plane import Plane
@@ -27,6 +28,7 @@ KINDS: dict[str, Kind] = {
         Length(),
         Sphere(),
         Plane(),
+        Cylinder(),
     )
 }
 """By name, in the order in which messages list them."""

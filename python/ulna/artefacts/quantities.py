@@ -42,10 +42,10 @@ QUANTITIES = (
     Quantity(
         "form",
         ("largest",),
-        "Spread of distances from the least-squares sphere or plane; the largest of all placements.",
+        "Spread of distances from the least-squares surface; the largest of all placements.",
     ),
     Quantity(
-        "diameter_error", ("largest",), "Of the least-squares sphere, signed; the largest in size of all placements."
+        "diameter_error", ("largest",), "Of the least-squares surface, signed; the largest in size of all placements."
     ),
 )
 """In the order in which they are shown."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,9 +17,6 @@ from ulna.ground.errors import UlnaInputError
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 PLASTIC = 1.324717957244746
 
-LEAST_PLANNED = 4
-"""Touches of a surface in a plan: three only say where it is."""
-
 
 class Surface(Kind):
     """A kind that is touched on its surface: no features, one number a touch."""
@@ -26,13 +24,15 @@ class Surface(Kind):
     named, scattered = False, True
     residual_columns = ("distance_mm",)
     touches = 20
+    least_planned: ClassVar[int] = 4
+    """Touches of it in a plan: three only say where it is."""
 
     def check_planned(self, artefact: Artefact, touches: int, label: str) -> None:
         """A few touches only say where it is. Raises UlnaInputError."""
-        if touches < LEAST_PLANNED:
+        if touches < self.least_planned:
             raise UlnaInputError(
                 f"{label}: {touches} touches of a {self.name} tell nothing, for its place is unknown; expected "
-                f"{LEAST_PLANNED} or more. Raise touches."
+                f"{self.least_planned} or more. Raise touches."
             )
 
 

@@ -50,7 +50,7 @@ class TouchedTable(StatedTable):
     placements: Times | None = None
     """How often it stands somewhere (seat: 1; bar: 100; length: 100 rows; others: 5)."""
     touches: Times | None = None
-    """Of each feature with each probe at each placement (seat: 30; others: 1); of a sphere or plane: in all (20)."""
+    """Of each feature with each probe at each placement (seat: 30; others: 1); of a surface: in all (20)."""
     probe: Probes | None = None
     """One, or a list; the arm's only one where it is not given."""
 

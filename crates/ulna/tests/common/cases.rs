@@ -89,6 +89,17 @@ pub const CASES: &[Case] = &[
         kind: "sphere",
         add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), true),
     },
+    Case { label: "shaft", kind: "cylinder", add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false) },
+    Case {
+        label: "bore of a diameter that may change",
+        kind: "cylinder",
+        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.01, true), true),
+    },
+    Case {
+        label: "shaft of unknown diameter",
+        kind: "cylinder",
+        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false),
+    },
     Case { label: "flat", kind: "plane", add: |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14)) },
     Case {
         label: "flat touched with two balls",
