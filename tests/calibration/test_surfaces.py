@@ -1,4 +1,5 @@
-"""Touches of balls, cylinders and flats: ranks, exact recovery, SciPy's optimum, intervals that hold the truth."""
+"""Touches of balls, cylinders and flats, distances from fixed points: ranks, exact recovery, SciPy's optimum, intervals
+that hold the truth."""
 
 from dataclasses import replace
 
@@ -46,6 +47,10 @@ def flat(arm, rng):
     return [FLATS[key]]
 
 
+def wire(arm, rng):
+    return [virtual.distances(arm, rng, 6, 40)]
+
+
 def one_flat(arm, rng):
     return [virtual.planes(arm, rng, 1, 120)]
 
@@ -65,6 +70,8 @@ TABLE = [
     (cylinder, 40.0, 25),
     (cylinder, 0.0, 23),
     (bore, 40.0, 25),
+    (wire, 40.0, 25),
+    (wire, 0.0, 23),
     (flat, 40.0, 24),
     (flat, 0.0, 22),
     (flat_and_bar, 40.0, 25),
@@ -85,7 +92,7 @@ def test_ranks_are_those_of_the_oracle(row):
     )
 
 
-@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, flat_and_bar])
+@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, wire, flat_and_bar])
 def test_exact_touches_give_the_truth(readings):
     truth, rng = table_4(), np.random.default_rng(2)
     groups = readings(truth, rng)
@@ -98,7 +105,7 @@ def test_exact_touches_give_the_truth(readings):
 
 
 @pytest.mark.parametrize("noise", [None, STATED], ids=["unweighted", "weighted"])
-@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, flat, one_flat, flat_and_bar])
+@pytest.mark.parametrize("readings", [ball, hollow, cylinder, bore, wire, flat, one_flat, flat_and_bar])
 def test_optimum_and_covariance_are_scipys(readings, noise):
     rng = np.random.default_rng(3)
     truth = table_4()
@@ -207,3 +214,58 @@ def test_a_flat_needs_no_ball_but_several_balls_need_theirs():
     wrong = _core.Problem(core_arm(two))
     wrong.add("plane", "flat", balls_mm=np.array([6.0, 6.0]), **rows)
     assert _core.fit(wrong, np.ones(30, bool)).rms_mm > 0.5
+
+
+def wire_problem(group, start, stated, dimensions):
+    problem = _core.Problem(core_arm(start), stated.encoder_rad, stated.seat_mm)
+    rows = {"q_rad": group.q_rad, "probe": np.zeros(len(group.q_rad), np.int64), "placement": group.placement}
+    problem.add("distance", "wire", dimensions=dimensions, measured_mm=group.measured_mm, **rows)
+    return problem
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("offset", "scale"),
+    [((0.0, False), (0.0, False)), ((0.0, True), (1e-5, False)), ((0.05, True), (1e-5, True))],
+    ids=["exact", "free offset, uncertain scale", "both within"],
+)
+def test_intervals_of_distances_hold_the_truth(offset, scale):
+    """1000 simulated calibrations each: offset and scale exact, uncertain, fitted within, fitted freely."""
+    truth = table_2(r_mm=40.0)
+    (group,) = wire(truth, np.random.default_rng(8))
+    problem = wire_problem(group, truth, STATED, [("offset", 0.0, *offset), ("scale", 1.0, *scale)])
+    truths = np.concatenate(
+        [truth.parameters, *([value] for value, (_, fitted) in ((0.0, offset), (1.0, scale)) if fitted)]
+    )
+    hold = np.zeros(len(truths), bool)
+    values, u, converged = _core.recalibrate(problem, hold, core_arm(truth), 1000, 1, 2)
+    assert converged.all()
+    determined = np.isfinite(u).all(axis=0)
+    assert determined.sum() == len(truths) - 2
+    held = (abs(values - truths) < NORMAL_95 * u)[:, determined].mean(axis=0)
+    assert held.min() > 0.925, held
+    assert held.max() < 0.975, held
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "lost"),
+    [
+        ([], set()),
+        ([("offset", 0.0, 0.0, True)], set()),
+        ([("scale", 1.0, 0.0, True)], {"artefact.wire.scale"}),
+        ([("offset", 0.0, 0.0, True), ("scale", 1.0, 0.0, True)], {"artefact.wire.scale"}),
+        ([("offset", 10.0, 0.0, False), ("scale", 1.0, 0.0, True)], set()),
+        ([("scale", 1.0, 1e-4, True)], set()),
+    ],
+)
+def test_an_instrument_of_unknown_scale_knows_no_scale(dimensions, lost):
+    """Only where nothing else is a length: an offset that is known and not zero is one, and a scale within its u."""
+    truth = table_2(r_mm=40.0)
+    (group,) = wire(truth, np.random.default_rng(9))
+    offset_mm = next((value for name, value, *_ in dimensions if name == "offset"), 0.0)
+    problem = wire_problem(replace(group, measured_mm=group.measured_mm - offset_mm), truth, STATED, dimensions)
+    found = _core.identify(problem, np.zeros(len(problem.parameter_names), bool))
+    scale = [set(each["combination"]) for each in found.lost if each["cause"] == "scale"]
+    assert len(scale) == bool(lost)
+    assert all(lost <= each for each in scale)
+    assert found.determined == len(problem.parameter_names) - 2 - len(scale)

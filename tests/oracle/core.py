@@ -10,7 +10,7 @@ from .chain import Chain
 from .effects import Affected
 from .fits import Groups, Noise
 from .observed import Lengths, Points
-from .surfaces import Cylinder, Plane, Sphere
+from .surfaces import Cylinder, Distances, Plane, Sphere
 
 COMPLIANCE = ("compliance_rad_per_nm", "masses_kg", "centres_mm", "gravity")
 
@@ -54,6 +54,9 @@ def core_problem(arm: Chain | Affected, groups: Groups, noise: Noise | None = No
             of = {"dimensions": [("diameter", group.diameter_mm, 0.0, False)], "inside": group.inside}
             of |= {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
             index = problem.add(kind, f"{kind} {number}", q_rad=q_rad, probe=probe, **conditions, **of)
+        elif isinstance(group, Distances):
+            of = {"measured_mm": group.measured_mm, "placement": group.placement.astype(np.int64)}
+            index = problem.add("distance", f"distances {number}", q_rad=q_rad, probe=probe, **conditions, **of)
         elif isinstance(group, Plane):
             of = {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
             index = problem.add("plane", f"flat {number}", q_rad=q_rad, probe=probe, **conditions, **of)

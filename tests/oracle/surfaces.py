@@ -13,22 +13,13 @@ from .observed import Index
 _STEP = 1e-30
 
 
-@dataclass(frozen=True)
-class Sphere:
-    """Touches of a ball of (or hollow with) a diameter, mm, with the probes' balls (P,), mm; unknown: the centre."""
+class _AboutPoints:
+    """Tips at known distances (N,) ``radius_mm`` from points; unknown: the points."""
 
-    diameter_mm: float
-    balls_mm: Array
     q_rad: Array
     placement: Index
-    probe: int | Index = 0
-    inside: bool = False
-
-    @property
-    def radius_mm(self) -> Array:
-        """(N,) of the sphere that the tip moves on."""
-        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
-        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
+    probe: int | Index
+    radius_mm: Array
 
     def unknowns(self, start: Chain) -> Array:
         tips = start.tip(self.q_rad, self.probe)
@@ -36,9 +27,9 @@ class Sphere:
         for number in range(self.placement.max() + 1):
             here = self.placement == number
             seen, radius = tips[here], self.radius_mm[here]
-            rough = np.linalg.lstsq(np.column_stack([2 * seen, np.ones(len(seen))]), (seen**2).sum(axis=1), rcond=None)[
-                0
-            ][:3]
+            # ‖p‖² - r² = 2 p·c - ‖c‖²
+            left = np.column_stack([2 * seen, -np.ones(len(seen))])
+            rough = np.linalg.lstsq(left, (seen**2).sum(axis=1) - radius**2, rcond=None)[0][:3]
             rows.append(least_squares(lambda c, p=seen, r=radius: np.linalg.norm(p - c, axis=1) - r, rough).x)
         return np.concatenate(rows)
 
@@ -58,6 +49,38 @@ class Sphere:
 
     def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
         return _covariance(self, arm, encoder_rad, seat_mm)
+
+
+@dataclass(frozen=True)
+class Sphere(_AboutPoints):
+    """Touches of a ball of (or hollow with) a diameter, mm, with the probes' balls (P,), mm; unknown: the centre."""
+
+    diameter_mm: float
+    balls_mm: Array
+    q_rad: Array
+    placement: Index
+    probe: int | Index = 0
+    inside: bool = False
+
+    @property
+    def radius_mm(self) -> Array:
+        """(N,) of the sphere that the tip moves on."""
+        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
+        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
+
+
+@dataclass(frozen=True)
+class Distances(_AboutPoints):
+    """(N,) distances of the tip from fixed points, as an instrument reads them; unknown: the points."""
+
+    measured_mm: Array
+    q_rad: Array
+    placement: Index
+    probe: int | Index = 0
+
+    @property
+    def radius_mm(self) -> Array:
+        return self.measured_mm
 
 
 @dataclass(frozen=True)
@@ -190,7 +213,7 @@ class Cylinder:
         return _covariance(self, arm, encoder_rad, seat_mm)
 
 
-Surface = Sphere | Plane | Cylinder
+Surface = Sphere | Plane | Cylinder | Distances
 
 
 def _jacobian(surface: Surface, arm: Chain, unknowns: Array) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .chain import Array, Chain
 from .observed import Lengths, Points
-from .surfaces import Cylinder, Plane, Sphere
+from .surfaces import Cylinder, Distances, Plane, Sphere
 
 #: Travel of every joint of the virtual arms, rad.
 TRAVEL_RAD = np.pi
@@ -224,3 +224,10 @@ def cylinders(
     placement, balls_mm = np.repeat(np.arange(count), each), np.full(arm.probes, ball_mm)
     stood = (np.stack(along[:count]), np.stack(through[:count]))
     return Cylinder(diameter_mm, balls_mm, q, placement, *stood, inside=inside)
+
+
+def distances(arm: Chain, rng: np.random.Generator, count: int, each: int) -> Distances:
+    """Distances of ``each`` random poses' tips from each of ``count`` fixed points."""
+    q, placement = random_poses(arm, rng, count * each), np.repeat(np.arange(count), each)
+    feet = random_points(arm, rng, count)[placement]
+    return Distances(np.linalg.norm(arm.tip(q) - feet, axis=1), q, placement)

@@ -16,6 +16,7 @@ from tests.cli_runs import platinum, run
 
 import ulna
 from ulna import Artefact, InputWarning, PlanSpec, UlnaInputError, _core
+from ulna.artefacts.distance import Instrument
 from ulna.artefacts.readings import Readings
 from ulna.planning.candidates import draw
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
@@ -35,6 +36,7 @@ FIXED = replace(PLATE, features={"a": (500.0, 100.0, 300.0), "b": (300.0, -350.0
 SPHERE = Artefact("ball", "sphere", {}, diameter_mm=30.0)
 HOLLOW = replace(SPHERE, inside=True)
 PLANE = Artefact("flat", "plane", {})
+WIRE = Artefact("wire", "distance", {}, own=Instrument(offset_mm=12.0))
 BORE = Artefact("bore", "cylinder", {}, diameter_mm=40.0, inside=True)
 
 
@@ -65,6 +67,7 @@ def spec(artefact: Artefact = BAR, **others: object) -> PlanSpec:
         (HOLLOW, 9, 6),
         (PLANE, 7, 4),
         (BORE, 12, 8),
+        (WIRE, 9, 6),
     ],
 )
 def test_the_rows_of_measurements_say_what_the_fit_says_of_them(artefact: Artefact, touches: int, rows: int) -> None:

@@ -24,6 +24,8 @@ WAYS = {
     "sphere and bar": BAR + BALL,
     "plane and bar": BAR + '[artefact.table]\nkind = "plane"\nsize = [300.0, 150.0]\n',
     "cylinder and bar": BAR + '[artefact.pin]\nkind = "cylinder"\ndiameter = 60.0\nu = 0.002\nheight = 150.0\n',
+    "draw wire": '[artefact.wire]\nkind = "distance"\noffset = 8.0\nfit_offset = true\nu_scale = 1e-5\n'
+    "placements = 8\n",
     "lengths": '[artefact.rows]\nkind = "length"\nlength = 350.0\nu = 0.001\nplacements = 300\n',
     "points in the arm's frame": '[artefact.tracker]\nkind = "points"\nframe = "arm"\ntouches = 20\nu = 0.002\n'
     "features = { a = [600.0, 0.0, 300.0], b = [0.0, 700.0, 100.0], c = [-500.0, 100.0, 500.0] }\n",

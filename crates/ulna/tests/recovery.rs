@@ -26,6 +26,7 @@ const TAKEN: &[(&str, &str, Taking)] = &[
     ("points", "a plate", plate),
     ("sphere", "a ball", |problem, truth, rng| surface(problem, truth, rng, ("sphere", 50.0), &round)),
     ("cylinder", "a shaft", |problem, truth, rng| surface(problem, truth, rng, ("cylinder", 60.0), &shaft)),
+    ("distance", "a draw wire", wire),
     ("plane", "a flat", |problem, truth, rng| surface(problem, truth, rng, ("plane", 0.0), &flat)),
 ];
 
@@ -124,6 +125,28 @@ fn plate(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
     problem
         .add("points", &Stated { name: "plate", features_mm: Some(&features_mm), ..Stated::default() }, &rows)
         .unwrap();
+}
+
+/// Distances from eight places, of a wire whose dead length is not known.
+fn wire(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
+    const OFFSET_MM: f64 = 12.5;
+    let feet: Vec<Point3<f64>> = (0..8).map(|_| tip_mm(truth, 0, &anywhere(rng))).collect();
+    let (mut q_rad, mut measured_mm, mut placement) = (vec![], vec![], vec![]);
+    for row in 0..200 {
+        let q = anywhere(rng);
+        measured_mm.push((tip_mm(truth, 0, &q) - feet[row % 8]).norm() - OFFSET_MM);
+        placement.push((row % 8) as i64);
+        q_rad.extend(q);
+    }
+    let rows = Rows {
+        poses: Angles::cold(&q_rad),
+        probe: &[0; 200],
+        placement: Some(&placement),
+        measured_mm: Some(&measured_mm),
+        ..Rows::default()
+    };
+    let dimensions = &[Size { name: "offset", value: OFFSET_MM, u: 0.0, fitted: true }];
+    problem.add("distance", &Stated { name: "wire", dimensions, ..Stated::default() }, &rows).unwrap();
 }
 
 /// Places of a ball's centre that touches the surface in one standing, about a point of it.

@@ -18,8 +18,8 @@ class Artefact:
     length_mm: float | None = None
     """bar only: distance between its seats."""
     u_mm: float = 0.0
-    """Standard uncertainty: of the length of a bar or of length rows, of the diameter of what is round; per coordinate of
-    each feature of points, where `feature_u_mm` does not say it of each."""
+    """Standard uncertainty: of the length of a bar or of length rows, of the diameter of what is round; per coordinate
+    of each feature of points, where `feature_u_mm` does not say it of each."""
     frame: Literal["free", "arm"] = "free"
     """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
     feature_u_mm: tuple[float, ...] | None = None

@@ -23,8 +23,6 @@ from ulna.ground.errors import UlnaInputError
 
 FEWEST = 6
 """Touches that leave something to judge: one more than a cylinder can meet."""
-HEIGHT_MM = 100.0
-"""How much of it is touched along its axis, where a simulation does not say it."""
 
 
 class CylinderTable(StatedTable):
@@ -55,8 +53,7 @@ class SimulatedCylinder(CylinderTable, TouchedTable):
 
     def size_mm(self, mm: float) -> tuple[float, float] | None:
         """Its height, twice: a cylinder goes all around."""
-        height_mm = HEIGHT_MM if self.height is None else self.height * mm
-        return height_mm, height_mm
+        return None if self.height is None else (self.height * mm, self.height * mm)
 
 
 class Cylinder(Surface):
@@ -65,6 +62,7 @@ class Cylinder(Surface):
     name = "cylinder"
     table, simulated = CylinderTable, SimulatedCylinder
     least_planned = 5
+    size_mm = (100.0, 100.0)
 
     def dimensions(self, artefact: Artefact) -> list[Dimension]:
         """Its diameter."""

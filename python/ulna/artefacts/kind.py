@@ -110,6 +110,8 @@ class Kind(ABC):
     """Whether a placement says nothing with some of its readings left out."""
     features_file: ClassVar[bool] = False
     """Whether its features are written into a file of their own."""
+    size_mm: ClassVar[tuple[float, float]] = (200.0, 200.0)
+    """How large a part of it is touched, where it has no end of its own and nobody says it."""
     placements: ClassVar[int] = 5
     """In how many places a simulation touches it."""
     touches: ClassVar[int] = 1

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.bar import Bar
 from ulna.artefacts.cylinder import Cylinder
+from ulna.artefacts.distance import Distance
 from ulna.artefacts.kind import Kind
 from ulna.artefacts.length import Length
 from ulna.artefacts.plane import Plane
@@ -29,6 +30,7 @@ KINDS: dict[str, Kind] = {
         Sphere(),
         Plane(),
         Cylinder(),
+        Distance(),
     )
 }
 """By name, in the order in which messages list them."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.artefacts.kind import Touches
 from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.planning.spec import PlanSpec
@@ -41,13 +42,19 @@ class Touchable:
         return Standing(self.at_mm, name, spec.artefact.frame == "arm", spec.room_mm)
 
 
+def spread_of(spec: PlanSpec, arm: Arm, probe: int) -> Touches:
+    """The touches of one measurement of something that touches are scattered over."""
+    touching = Touching(spec.artefact, 1, spec.touches, size_mm=kind_of(spec.artefact).size_mm)
+    return touches_of(touching, spec.artefact, arm, [probe])
+
+
 def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
     """Of the plan's artefact."""
     artefact = spec.artefact
     if not kind_of(artefact).scattered:
         at_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
         return Touchable(at_mm, tuple(artefact.features), spec.touches)
-    spread = touches_of(Touching(artefact, 1, spec.touches), artefact, arm, [probe])
+    spread = spread_of(spec, arm, probe)
     at_mm, outward = spread.centre_mm, spread.off
     unknowns = kind_of(artefact).moved_by(spread)
     names = tuple(str(number + 1) for number in range(len(at_mm)))

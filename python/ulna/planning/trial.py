@@ -16,6 +16,7 @@ from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
 from ulna.planning.spec import PlanSpec
+from ulna.planning.touchable import spread_of
 from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
@@ -60,7 +61,7 @@ def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Proble
         artefact=replace(spec.artefact, u_mm=0.0, feature_u_mm=None, fitted=False),
         q_rad=np.ascontiguousarray(q_rad.reshape(-1, n)),
         p_rad=None,
-        length_mm=None,
+        length_mm=_measured_mm(spec, arm, probe, count),
         probe=np.full(count * per, probe, dtype=np.int64),
         feature=each if kind.named else np.zeros_like(each),
         placement=Labels(np.repeat(np.arange(count), per), [str(number) for number in range(count)]),
@@ -70,6 +71,14 @@ def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Proble
     balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
     kind.enter(problem, readings, balls_mm, [arm.conditions(len(readings))])
     return problem
+
+
+def _measured_mm(spec: PlanSpec, arm: Arm, probe: int, count: int) -> F64 | None:
+    """What is measured along with each row of so many measurements, exactly; None where nothing is."""
+    kind, artefact = kind_of(spec.artefact), spec.artefact
+    if kind.measured_column is None or not kind.scattered:
+        return None
+    return kind.measured_mm(artefact, artefact, spread_of(spec, arm, probe), count, np.random.default_rng(0))
 
 
 def carry_out(

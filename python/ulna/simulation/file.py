@@ -51,19 +51,17 @@ def load_simulation(path: Path) -> Simulation:
 
 
 def _touching(name: str, table: TouchedTable, place: Place) -> Touching:
-    mm = place.units.mm
     kind = KINDS[table.kind]
     kind.check_simulated(table, f"{place.path}: key 'artefact.{name}")
     artefact = made(name, table, place)
-    size_mm = table.size_mm(mm)
     given = () if table.probe is None else (table.probe,) if isinstance(table.probe, str) else tuple(table.probe)
-    plain = Touching(
+    return Touching(
         artefact=artefact,
         placements=table.placements or (1 if artefact.frame == "arm" else kind.placements),
         touches=table.touches or kind.touches,
         probes=given,
+        size_mm=table.size_mm(place.units.mm) or kind.size_mm,
     )
-    return plain if size_mm is None else replace(plain, size_mm=size_mm)
 
 
 def _drawing(table: DrawingTable | str, units: Units) -> Drawing | None:

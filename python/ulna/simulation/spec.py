@@ -25,11 +25,11 @@ class Touching:
     placements: int
     """How often it stands somewhere; of kind length: rows."""
     touches: int = 1
-    """Of each feature with each probe at each placement; of a sphere or plane: touches in all, with each probe."""
+    """Of each feature with each probe at each placement; of a surface: touches in all, with each probe."""
     probes: tuple[str, ...] = ()
     """With which it is touched; none: the arm's only one."""
     size_mm: tuple[float, float] = (200.0, 200.0)
-    """plane only: the rectangle that is touched."""
+    """How large a part is touched of what has no end of its own, as its kind understands it."""
 
 
 @dataclass(frozen=True)

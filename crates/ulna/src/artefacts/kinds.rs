@@ -1,6 +1,7 @@
 //! The kinds of artefacts that there are: a line and a row for each, and nothing else that asks which one it is.
 
 mod cylinder;
+mod distance;
 mod length;
 mod plane;
 mod points;
@@ -13,7 +14,7 @@ use crate::arm::Arm;
 use crate::error::{Error, Result};
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[points::KIND, length::KIND, sphere::KIND, plane::KIND, cylinder::KIND];
+pub const KINDS: &[Kind] = &[points::KIND, length::KIND, sphere::KIND, plane::KIND, cylinder::KIND, distance::KIND];
 
 /// Dimensions of one artefact that are carried through a fit as columns of their own.
 const MOST_DIMENSIONS: usize = 1500;

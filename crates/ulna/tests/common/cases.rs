@@ -100,6 +100,22 @@ pub const CASES: &[Case] = &[
         kind: "cylinder",
         add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false),
     },
+    Case { label: "distances", kind: "distance", add: |p, r, k| distances(p, r, k, &[]) },
+    Case {
+        label: "distances of an instrument that may be off",
+        kind: "distance",
+        add: |p, r, k| distances(p, r, k, &[size("offset", 5.0, 1.0, true), size("scale", 1.001, 0.01, true)]),
+    },
+    Case {
+        label: "distances of an instrument of unknown scale",
+        kind: "distance",
+        add: |p, r, k| distances(p, r, k, &[size("scale", 1.0, 0.0, true)]),
+    },
+    Case {
+        label: "distances of an instrument of which nothing is known",
+        kind: "distance",
+        add: |p, r, k| distances(p, r, k, &[size("offset", 5.0, 0.0, true), size("scale", 1.001, 0.0, true)]),
+    },
     Case { label: "flat", kind: "plane", add: |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14)) },
     Case {
         label: "flat touched with two balls",
@@ -135,6 +151,22 @@ fn lengths(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, dime
         ..Rows::default()
     };
     problem.add(kind, &Stated { name: "pairs", dimensions, ..Stated::default() }, &rows).unwrap();
+}
+
+/// Distances from two places, as they might be read.
+fn distances(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, dimensions: &[Size]) {
+    let (n, count) = (problem.arm().encoders(), 44);
+    let (q, told) = (angles(rng, n * count), Told::any(rng, count, 1, n));
+    let reach_mm = problem.arm().reach_mm(0);
+    let measured_mm: Vec<f64> = (0..count).map(|_| reach_mm * rng.random_range(0.8..1.2)).collect();
+    let rows = Rows {
+        poses: told.at(&q),
+        probe: &(0..count).map(|i| i % 2).collect::<Vec<_>>(),
+        placement: Some(&(0..count).map(|i| (i % 2) as i64).collect::<Vec<_>>()),
+        measured_mm: Some(&measured_mm),
+        ..Rows::default()
+    };
+    problem.add(kind, &Stated { name: "wire", dimensions, ..Stated::default() }, &rows).unwrap();
 }
 
 /// Touches all around places of something round, its diameter in reaches of the arm.

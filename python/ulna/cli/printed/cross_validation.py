@@ -8,16 +8,16 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from ulna.arm.directions import sentence
+from ulna.artefacts.quantities import QUANTITIES
 from ulna.calibration.cross_validate import CrossValidation
 from ulna.cli.printed.figures import MOST_ROWS, before_after
 from ulna.cli.printed.tables import heading, listed, table
 from ulna.ground.digits import figure_mm
 
+#: of each quantity the first figure that a size can be read from
 _SHOWN = {
-    "seat_scatter_mean_mm": "seat",
-    "length_error_mean_abs_mm": "length",
-    "coordinate_error_mean_mm": "coord.",
-    "form_mm": "form",
+    quantity.figure(next(each for each in ("mean_abs", "mean", "largest") if each in quantity.figures)): quantity.short
+    for quantity in QUANTITIES
 }
 
 #: as many as a terminal of 80 columns has room for; the table over all groups has every figure

@@ -7,38 +7,15 @@ from collections.abc import Mapping, Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from ulna.artefacts.quantities import NAMES
+from ulna.artefacts.quantities import NAMES, QUANTITIES
 from ulna.calibration.placements import PlacementFigures, without_repeats
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import figure_mm
 
 MOST_ROWS = 24
 
-WORDS = {
-    "seat_scatter_mean_mm": "seat scatter, mean",
-    "seat_scatter_rms_mm": "seat scatter, rms",
-    "seat_scatter_max_mm": "seat scatter, max",
-    "length_error_mean_mm": "length error, signed mean",
-    "length_error_mean_abs_mm": "length error, mean size",
-    "length_error_rms_mm": "length error, rms",
-    "length_error_max_abs_mm": "length error, max size",
-    "coordinate_error_mean_mm": "coordinate error, mean",
-    "coordinate_error_rms_mm": "coordinate error, rms",
-    "coordinate_error_max_mm": "coordinate error, max",
-    "form_mm": "form, largest",
-    "diameter_error_mm": "diameter error, largest",
-}
-_SHORT = {
-    "seat_scatter_mean_mm": "seat\nmean",
-    "seat_scatter_max_mm": "seat\nmax",
-    "length_error_mean_mm": "length\nmean",
-    "length_error_mean_abs_mm": "length\nsize",
-    "length_error_max_abs_mm": "length\nmax",
-    "coordinate_error_mean_mm": "coord.\nmean",
-    "coordinate_error_max_mm": "coord.\nmax",
-    "form_mm": "form",
-    "diameter_error_mm": "diam.\nerror",
-}
+WORDS = {name: words for quantity in QUANTITIES for name, words in quantity.words().items()}
+_SHORT = {name: head for quantity in QUANTITIES for name, head in quantity.heads().items()}
 
 
 def before_after(

@@ -8,16 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ulna.artefacts.quantities import QUANTITIES, Quantity
 from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
-
-#: quantity → its mean, RMS and largest among the figures; the others have no more than one number
-DISTRIBUTED = {
-    "length_error": ("length_error_mean_mm", "length_error_rms_mm", "length_error_max_abs_mm"),
-    "seat_scatter": ("seat_scatter_mean_mm", "seat_scatter_rms_mm", "seat_scatter_max_mm"),
-    "coordinate_error": ("coordinate_error_mean_mm", "coordinate_error_rms_mm", "coordinate_error_max_mm"),
-}
-WORST = {"form": "form_mm", "diameter_error": "diameter_error_mm"}
 
 
 @dataclass(frozen=True)
@@ -25,7 +18,7 @@ class Summary:
     """What a table of errors shows, mm."""
 
     mean_mm: float
-    """Signed for length errors; of distances, which are positive, just their mean; NaN where it is not known."""
+    """Signed for signed errors; of sizes, which are positive, just their mean; NaN where it is not known."""
     rms_mm: float
     max_mm: float
     """Largest size."""
@@ -42,7 +35,7 @@ class QualityRow:
     """One quantity on one set of readings, before and after."""
 
     quantity: str
-    """"length_error", "seat_scatter", "coordinate_error", "form", "diameter_error", or "residual": its size."""
+    """One of `ulna.artefacts.quantities`, or "residual": its size."""
     readings: str
     """"fitted"; "check" (rows of the study that were kept), "left-out" (cross-validation) or "evaluated": held out."""
     before: Summary | None
@@ -54,10 +47,11 @@ class QualityRow:
 def quality_rows(readings: str, before: Figures | None, after: Figures) -> list[QualityRow]:
     """A row for every quantity that these readings give."""
     rows = []
-    for quantity in (*DISTRIBUTED, *WORST):
+    # what has a mean comes first, lengths before all
+    for quantity in sorted(QUANTITIES, key=lambda each: (not each.distributed, not each.signed)):
         old, new = (None if each is None else _summary(quantity, each) for each in (before, after))
         if old is not None or new is not None:
-            rows.append(QualityRow(quantity, readings, old, new, quantity == "length_error"))
+            rows.append(QualityRow(quantity.name, readings, old, new, quantity.signed))
     return rows
 
 
@@ -71,13 +65,11 @@ def residual_row(result: Result) -> QualityRow | None:
     return QualityRow("residual", "fitted", before, after, False)
 
 
-def _summary(quantity: str, found: Mapping[str, float]) -> Summary | None:
-    if quantity in WORST:
+def _summary(quantity: Quantity, found: Mapping[str, float]) -> Summary | None:
+    if not quantity.distributed:
         # of each placement one number, and the largest of them is all that is kept
-        value = found.get(WORST[quantity])
+        value = found.get(quantity.figure("largest"))
         return None if value is None else Summary(math.nan, math.nan, value)
-    values = [found.get(name) for name in DISTRIBUTED[quantity]]
-    mean, rms, most = values
-    if mean is None or rms is None or most is None:
-        return None
-    return Summary(mean, rms, most)
+    most = "max_abs" if quantity.signed else "max"
+    mean, rms, largest = (found.get(quantity.figure(each)) for each in ("mean", "rms", most))
+    return None if mean is None or rms is None or largest is None else Summary(mean, rms, largest)

@@ -1,0 +1,238 @@
+"""`distance`: from an unknown fixed point to the tip, a row each: a draw wire, a telescoping bar, a laser tracer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+import ulna._core as _core
+from ulna.arm.conditions import Conditions
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.entering import enter_rows
+from ulna.artefacts.kind import Dimension, Errors, Kind, Tips, Touches, Touching
+from ulna.artefacts.readings import Readings
+from ulna.artefacts.surface import GOLDEN, PLASTIC
+from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.formats.numbers import Positive, Uncertainty
+from ulna.geometry.point import fit_point
+from ulna.ground.arrays import F64, I64
+from ulna.ground.errors import UlnaInputError
+
+FEWEST = 5
+"""Rows that leave something to judge: one more than a point has coordinates, and one for luck of position."""
+
+MOST_STEPS = 30
+STILL = 1e-13
+"""Of an offset in mm or a scale: a step this small is none."""
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """What is stated of what measures: distance = offset + scale · reading."""
+
+    offset_mm: float = 0.0
+    u_offset_mm: float = 0.0
+    fit_offset: bool = False
+    scale: float = 1.0
+    u_scale: float = 0.0
+    fit_scale: bool = False
+
+
+class DistanceTable(StatedTable):
+    """Distances from an unknown fixed point to the tip, one a row: distance = offset + scale · reading."""
+
+    kind: Literal["distance"]
+    offset: float = 0.0
+    """What is added to every reading: the dead length of a wire, the bar's own."""
+    u_offset: Uncertainty = 0.0
+    """Standard uncertainty of the offset."""
+    fit_offset: bool = False
+    """Whether the offset is fitted: within its uncertainty, or freely where none is stated."""
+    scale: Positive = 1.0
+    """What every reading is multiplied by."""
+    u_scale: Uncertainty = 0.0
+    """Standard uncertainty of the scale."""
+    fit_scale: bool = False
+    """Whether the scale is fitted: within its uncertainty, or freely where none is stated."""
+
+    def made(self, name: str, place: Place) -> Artefact:
+        """Without features: nobody touches it. Raises UlnaInputError where nothing would be known."""
+        mm = place.units.mm
+        own = Instrument(
+            self.offset * mm, self.u_offset * mm, self.fit_offset, self.scale, self.u_scale, self.fit_scale
+        )
+        return Artefact(name, "distance", {}, own=own)
+
+
+class SimulatedDistance(DistanceTable, TouchedTable):
+    """An instrument, and how far away the tip is when it measures."""
+
+    range: Annotated[list[Positive], Field(min_length=2, max_length=2)] | None = None
+    """Least and largest distance from the fixed point (200 mm, 600 mm)."""
+
+    def size_mm(self, mm: float) -> tuple[float, float] | None:
+        """The range."""
+        return None if self.range is None else (self.range[0] * mm, self.range[1] * mm)
+
+
+def instrument(artefact: Artefact) -> Instrument:
+    """What is stated of an artefact of this kind."""
+    assert isinstance(artefact.own, Instrument)
+    return artefact.own
+
+
+class Distance(Kind):
+    """One distance a row from an unknown fixed point."""
+
+    name = "distance"
+    table, simulated = DistanceTable, SimulatedDistance
+    named, scattered = False, True
+    measured_column = "distance"
+    residual_columns = ("distance_mm",)
+    placements, touches = 3, 40
+    size_mm = (200.0, 600.0)
+
+    def dimensions(self, artefact: Artefact) -> list[Dimension]:
+        """Offset and scale."""
+        own = instrument(artefact)
+        return [
+            Dimension("offset", own.offset_mm, own.u_offset_mm, own.fit_offset),
+            Dimension("scale", own.scale, own.u_scale, own.fit_scale, "1"),
+        ]
+
+    def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
+        """With what was measured in each row."""
+        stated = [(each.name, each.value, each.u, each.fitted) for each in self.dimensions(group.artefact)]
+        enter_rows(
+            problem,
+            "distance",
+            group,
+            conditions[0],
+            placement=group.placement_code,
+            measured_mm=group.length_mm,
+            dimensions=stated,
+        )
+
+    def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:
+        """Distances from the point that fits a placement's tips best, minus those measured; an offset or scale that is
+        fitted is the one that fits best here."""
+        assert readings.length_mm is not None
+        own, read_mm = instrument(readings.artefact), readings.length_mm
+        placements = [np.flatnonzero(tips.code == number) for number in range(int(tips.code.max()) + 1)]
+        stands: list[_Stand] = []
+        codes: list[I64] = []
+        for rows in placements:
+            try:
+                stand = _Stand(tips.first_mm[rows], read_mm[rows])
+                stand.errors_mm(own.offset_mm, own.scale)
+            except UlnaInputError:  # tips on a line, say: no point can be told
+                continue
+            if len(rows) >= FEWEST:
+                stands.append(stand)
+                codes.append(tips.code[rows])
+        if not stands:
+            return {}
+        offset_mm, scale = _as_they_fit(own, stands)
+        errors_mm = np.concatenate([stand.errors_mm(offset_mm, scale)[0] for stand in stands])
+        return {"distance_error": Errors(errors_mm, np.concatenate(codes))}
+
+    def drawn(self, stated: Artefact, rng: np.random.Generator) -> Artefact:
+        """The instrument's own offset and scale."""
+        own = instrument(stated)
+        offset_mm, scale = rng.standard_normal(2) * (own.u_offset_mm, own.u_scale) + (own.offset_mm, own.scale)
+        return replace(stated, own=replace(own, offset_mm=float(offset_mm), scale=float(scale)))
+
+    def touched(self, true: Artefact, how: Touching) -> Touches:
+        """The tip all around the fixed point, which is the origin, near and far."""
+        number = np.arange(how.touches)
+        height, angle = 2.0 * (number + 0.5) / how.touches - 1.0, 2.0 * np.pi * number * GOLDEN
+        across = np.sqrt(1.0 - height**2)
+        direction = np.column_stack([across * np.cos(angle), across * np.sin(angle), height])
+        near_mm, far_mm = how.size_mm
+        reach_mm = near_mm + (far_mm - near_mm) * ((number / PLASTIC) % 1.0)
+        probe = np.repeat(how.probes, how.touches)
+        away = np.tile(direction, (len(how.probes), 1))
+        return Touches(np.tile(reach_mm, len(how.probes))[:, None] * away, away, probe, np.zeros(len(probe), np.int64))
+
+    def measured_mm(
+        self, stated: Artefact, true: Artefact, touches: Touches, places: int, rng: np.random.Generator
+    ) -> F64 | None:
+        """What the instrument reads."""
+        own = instrument(true)
+        read_mm: F64 = (np.linalg.norm(touches.centre_mm, axis=1) - own.offset_mm) / own.scale
+        return np.tile(read_mm, places)
+
+    def check_simulated(self, table: TouchedTable, key: str) -> None:
+        """The range goes from near to far. Raises UlnaInputError."""
+        assert isinstance(table, SimulatedDistance)
+        if table.range is not None and not table.range[0] < table.range[1]:
+            raise UlnaInputError(f"{key}.range': got {table.range}; expected the least distance first. Swap them.")
+
+    def moved_by(self, touches: Touches) -> F64:
+        """The fixed point."""
+        return touches.off
+
+    def check_planned(self, artefact: Artefact, touches: int, label: str) -> None:
+        """Fewer rows only say where the point is; offset and scale are as stated. Raises UlnaInputError."""
+        fitted = next((each.name for each in self.dimensions(artefact) if each.fitted), None)
+        if fitted is not None:
+            raise UlnaInputError(
+                f"{label}: artefact '{artefact.name}' has fit_{fitted} = true; expected it as its certificate has it, "
+                f"which a plan takes as known. Remove fit_{fitted}."
+            )
+        if touches < FEWEST:
+            raise UlnaInputError(
+                f"{label}: {touches} distances tell nothing, for the point that they are measured from is unknown; "
+                f"expected {FEWEST} or more. Raise touches."
+            )
+
+    def written(self, artefact: Artefact, features_file: str) -> dict[str, Any]:
+        """What differs from an instrument that is right."""
+        own, right = instrument(artefact), Instrument()
+        keys = {
+            "offset": "offset_mm",
+            "u_offset": "u_offset_mm",
+            "fit_offset": "fit_offset",
+            "scale": "scale",
+            "u_scale": "u_scale",
+            "fit_scale": "fit_scale",
+        }
+        return {key: getattr(own, name) for key, name in keys.items() if getattr(own, name) != getattr(right, name)}
+
+
+@dataclass(frozen=True)
+class _Stand:
+    """Readings from one fixed point."""
+
+    tips_mm: F64
+    read_mm: F64
+
+    def errors_mm(self, offset_mm: float, scale: float) -> tuple[F64, F64]:
+        """(N,) errors against the point that fits best, and (N, 3) the directions in which the distances grow."""
+        found = fit_point(self.tips_mm, offset_mm + scale * self.read_mm, "distance")
+        away_mm = self.tips_mm - found.point_mm
+        return found.residuals_mm, away_mm / np.linalg.norm(away_mm, axis=1, keepdims=True)
+
+
+def _as_they_fit(own: Instrument, stands: list[_Stand]) -> tuple[float, float]:
+    """Offset (mm) and scale: as stated, or, where they are fitted, those of the least squares over all placements, by
+    Gauss–Newton with the fixed points eliminated."""
+    fitted = np.array([own.fit_offset, own.fit_scale])
+    found = np.array([own.offset_mm, own.scale])
+    for _ in range(MOST_STEPS if fitted.any() else 0):
+        rows, left = [], []
+        for stand in stands:
+            errors_mm, away = stand.errors_mm(*found)
+            span = np.linalg.qr(away).Q
+            both = np.column_stack([np.ones(len(errors_mm)), stand.read_mm, errors_mm])
+            both -= span @ (span.T @ both)
+            rows.append(both[:, :2][:, fitted])
+            left.append(both[:, 2])
+        step = np.linalg.lstsq(np.concatenate(rows), np.concatenate(left))[0]
+        found[fitted] += step
+        if np.all(np.abs(step) <= STILL * np.maximum(1.0, np.abs(found[fitted]))):
+            break
+    return float(found[0]), float(found[1])
