@@ -24,8 +24,11 @@ def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], left:
     )
     for k, head in enumerate(heads):
         made.add_column(escape(head), justify="left" if k < left else "right", no_wrap=True, vertical="bottom")
-    for row in rows:
-        made.add_row(*(Text(cell) for cell in row))  # neither markup nor ":art:" for a picture
+    # Lines of one row: rich measures and draws cell by cell, which for 30 parameters takes longer than to fit them.
+    # A Text is neither markup nor has it ":art:" for a picture.
+    columns = [Text("\n".join(cell.replace("\n", " ") for cell in column)) for column in zip(*rows, strict=True)]
+    if columns:
+        made.add_row(*columns)
     return made
 
 
