@@ -38,8 +38,8 @@ def print_json(document: Mapping[str, Any]) -> None:
 
 def print_renderable(*parts: RenderableType) -> None:
     """On stdout. Where a table is wider than the terminal its lines run over: no number is ever cut or broken."""
-    narrow = _Out(file=sys.stdout, highlight=False)
-    wide = _Out(file=sys.stdout, highlight=False, width=_AS_WIDE_AS_IT_IS)
+    narrow = _Out(file=sys.stdout, highlight=False, emoji=False)
+    wide = _Out(file=sys.stdout, highlight=False, emoji=False, width=_AS_WIDE_AS_IT_IS)
     for part in parts:
         whole = isinstance(part, Table) and all(column.no_wrap for column in part.columns)
         (wide if whole else narrow).print(part, crop=False)

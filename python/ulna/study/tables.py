@@ -104,4 +104,4 @@ class StudyFile(Strict):
     readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
     artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
     noise: NoiseTable | None = None
-    fit: FitTable = FitTable()
+    fit: FitTable = Field(default_factory=FitTable)
