@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, RenderableType
 from rich.table import Table
 
-Progress = Callable[[str, int, int], None]
+if TYPE_CHECKING:
+    from ulna.ground.arrays import Progress  # loads NumPy, which a list of names does not need
 
 _PROGRESS_AFTER_S = 1.0
 _AS_WIDE_AS_IT_IS = 10_000
