@@ -4,24 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rich import box
 from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from ulna.ground.terminal import plain_table
+
 
 def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> Table:
     """A table; the first `left` columns hold words, the others numbers. A head may have several lines."""
-    made = Table(
-        title=Text(title, style="bold"),
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-        header_style="",
-    )
+    made = plain_table(title)
     for k, head in enumerate(heads):
         made.add_column(escape(head), justify="left" if k < left else "right", no_wrap=True, vertical="bottom")
     # Lines of one row: rich measures and draws cell by cell, which for 30 parameters takes longer than to fit them.
