@@ -17,8 +17,6 @@ from ulna.verification.result_file import TestedTable, VerificationFile
 class TestedLengths:
     """Length errors of an acceptance test over their lengths."""
 
-    __test__ = False  # no test of pytest's
-
     state: str
     """"as-found" or "as-left"."""
     test: str
