@@ -3,24 +3,8 @@
 import numpy as np
 
 from benchmarks.lengths import F64, HELD, Lengths
+from ulna.reproduce.cheng2011.arms import TABLE_2, TABLE_3, Links
 
-#: cheng2011, Table 2 (truth) and Table 3 (start): theta0 rad, alpha rad, a mm, d mm of joints 1 to 6
-TRUTH_LINKS = [
-    (0.0, -np.pi / 2, 40.0, 250.0),
-    (2.2689, np.pi / 2, -40.0, 0.0),
-    (0.0, -np.pi / 2, 30.0, 450.0),
-    (2.2689, np.pi / 2, -30.0, 0.0),
-    (0.0, -np.pi / 2, 30.0, 450.0),
-    (2.2689, np.pi / 2, -30.0, 0.0),
-]
-START_LINKS = [
-    (0.1, -1.57, 35.0, 260.0),
-    (2.2, 1.57, -35.0, 0.0),
-    (0.1, -1.57, 35.0, 400.0),
-    (2.2, 1.57, -35.0, 0.0),
-    (0.1, -1.57, 35.0, 400.0),
-    (2.2, 1.57, -35.0, 0.0),
-]
 #: r = 10 mm off the last axis, h = 200 mm; the start has the 0.1 rad and 180 mm of Table 3, and 8 mm for r
 TRUTH_TIP_MM = (10.0, 0.0, 200.0)
 START_TIP_MM = (8.0 * np.cos(0.1), -8.0 * np.sin(0.1), 180.0)
@@ -32,13 +16,13 @@ ENCODER_NOISE_RAD = 5e-6
 FOUND = 1e-6
 
 
-def parameters(links: list[tuple[float, float, float, float]], tip_mm: tuple[float, float, float]) -> F64:
+def parameters(links: Links, tip_mm: tuple[float, float, float]) -> F64:
     """Six links and a tip → the 27 parameters in the order of `ulna.Arm.parameter_names`."""
     return np.concatenate([np.asarray(links, np.float64).ravel(), np.asarray(tip_mm, np.float64)])
 
 
-TRUTH = parameters(TRUTH_LINKS, TRUTH_TIP_MM)
-START = parameters(START_LINKS, START_TIP_MM)
+TRUTH = parameters(TABLE_2, TRUTH_TIP_MM)
+START = parameters(TABLE_3, START_TIP_MM)
 #: the start with the held two at their true values, as an assigned base frame has them
 START[HELD] = TRUTH[HELD]
 

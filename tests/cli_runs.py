@@ -15,16 +15,9 @@ import polars as pl
 from ulna.arm.arm import Arm
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
+from ulna.reproduce.cheng2011.arms import BENT_PROBE, TABLE_4
 
-TABLE_4 = [
-    (1.521927, -1.572781, 42.4754, 149.7000),
-    (0.791659, 1.567756, -42.0588, -0.9472),
-    (0.022211, -1.570242, 28.5382, 439.5104),
-    (0.879434, 1.568061, -28.5351, -0.8421),
-    (0.032396, -1.574439, 28.5535, 439.4015),
-    (0.860088, 1.572594, -28.5478, -0.9604),
-]
-BENT = Probe.from_cylindrical(0.431148, 39.4321, 223.8773)
+BENT = Probe.from_cylindrical(*BENT_PROBE)
 STRAIGHT = Probe(0.0, 0.0, 238.5596)
 
 

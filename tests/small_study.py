@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ulna import InputWarning, Study, UlnaInputError
+from ulna import Arm, InputWarning, Study, UlnaInputError
 
 ARM = """\
 format = "ulna-arm/1"
@@ -43,11 +43,14 @@ ball = 6.0
 tip = { x = 0.0, y = 0.0, z = 238.0 }
 """
 
-STUDY = """\
-format = "ulna-study/1"
-arm = "arm.toml"
-units = { length = "mm", angle = "rad" }
-
+#: how a study of arm.toml begins
+MM_RAD, MM_DEG = (
+    f'format = "ulna-study/1"\narm = "arm.toml"\nunits = {{ length = "mm", angle = "{angle}" }}\n\n'
+    for angle in ("rad", "deg")
+)
+STUDY = (
+    MM_RAD
+    + """\
 [[readings]]
 file = "bars.csv"
 angle = "rad"
@@ -66,6 +69,7 @@ seat = 0.005
 [fit]
 hold = ["joint.1.theta0"]
 """
+)
 
 #: two standings of the bar, each touched twice at A and twice at B
 BARS = "q1,q2,q3,placement,feature\n" + "".join(
@@ -116,6 +120,25 @@ class SmallStudy:
         with pytest.raises(UlnaInputError) as caught:
             self.load()
         return str(caught.value)
+
+    def refuses(self) -> bool:
+        """Whether loading fails, with a message; warnings are nobody's affair."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                Study.load(self.path)
+            except UlnaInputError as error:
+                says(str(error), str(self.folder))
+                return True
+        return False
+
+
+def arm_error(path: Path, content: str | bytes) -> str:
+    """The message with which loading an arm fails, from a file with this content."""
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(UlnaInputError) as caught:
+        Arm.load(path)
+    return str(caught.value)
 
 
 def says(message: str, *fragments: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.small_study import ARM, says
+from tests.small_study import ARM, arm_error, says
 
 from ulna import Arm, UlnaInputError
 
@@ -59,24 +59,14 @@ def test_what_an_arm_file_is_told(tmp_path: Path, case: str) -> None:
     old, new, fragments = CASES[case]
     assert old in ARM
     path = tmp_path / "arm.toml"
-    path.write_text(ARM.replace(old, new, 1))
-    with pytest.raises(UlnaInputError) as caught:
-        Arm.load(path)
-    says(str(caught.value), f"{path}: ", *fragments)
+    says(arm_error(path, ARM.replace(old, new, 1)), f"{path}: ", *fragments)
 
 
 def test_too_few_joints_and_no_probe(tmp_path: Path) -> None:
     path = tmp_path / "arm.toml"
-    path.write_text(
-        'format = "ulna-arm/1"\nunits = { length = "mm", angle = "rad" }\n[[joint]]\n[probe.p]\ntip={x=0,y=0,z=1}\n'
-    )
-    with pytest.raises(UlnaInputError) as caught:
-        Arm.load(path)
-    says(str(caught.value), "'joint'", "at least 2 entries (there are 1)")
-    path.write_text(ARM[: ARM.index("[probe.bent]")])
-    with pytest.raises(UlnaInputError) as caught:
-        Arm.load(path)
-    says(str(caught.value), "key 'probe' is missing")
+    one = 'format = "ulna-arm/1"\nunits = { length = "mm", angle = "rad" }\n[[joint]]\n[probe.p]\ntip={x=0,y=0,z=1}\n'
+    says(arm_error(path, one), "'joint'", "at least 2 entries (there are 1)")
+    says(arm_error(path, ARM[: ARM.index("[probe.bent]")]), "key 'probe' is missing")
 
 
 def test_a_missing_file_a_folder_and_an_unreadable_file(tmp_path: Path) -> None:
@@ -101,10 +91,7 @@ def test_a_missing_file_a_folder_and_an_unreadable_file(tmp_path: Path) -> None:
 )
 def test_a_file_that_is_no_text(tmp_path: Path, content: bytes, fragments: tuple[str, ...]) -> None:
     path = tmp_path / "arm.toml"
-    path.write_bytes(content)
-    with pytest.raises(UlnaInputError) as caught:
-        Arm.load(path)
-    says(str(caught.value), str(path), *fragments)
+    says(arm_error(path, content), str(path), *fragments)
 
 
 @pytest.mark.parametrize(
@@ -120,10 +107,7 @@ def test_a_file_that_is_no_text(tmp_path: Path, content: bytes, fragments: tuple
 )
 def test_a_result_that_is_none(tmp_path: Path, text: str, fragments: tuple[str, ...]) -> None:
     path = tmp_path / "result.json"
-    path.write_text(text)
-    with pytest.raises(UlnaInputError) as caught:
-        Arm.load(path)
-    says(str(caught.value), str(path), *fragments)
+    says(arm_error(path, text), str(path), *fragments)
 
 
 def test_a_probe_that_the_arm_does_not_have(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.oracle import fits, virtual
+from tests.oracle.comparison import fitted_as_the_oracle
 from tests.oracle.core import core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_4
@@ -56,22 +57,8 @@ def case(request):
 @pytest.mark.parametrize("noise", [None, STATED], ids=["unweighted", "weighted"])
 def test_optimum_and_covariance(case, noise):
     groups, start, hold = case
-    found = _core.fit(core_problem(start, groups, noise), hold)
-    assert found.converged
-    ours = start.with_parameters(found.parameters)
-    # Weights belong to the arm that was found: the oracle is given the same.
-    oracle = fits.fit(groups, ours, ~hold, noise, white_at=ours)
-    covariance = oracle.covariance(stated=noise is not None)
-    u = np.sqrt(np.diag(covariance))
-
-    # The core widens each covariance by a millionth, so that one without seat noise can be inverted.
-    assert found.cost == pytest.approx(oracle.cost, rel=3e-6)
-    off = (ours.parameters - oracle.arm.parameters)[~hold] / u
-    assert abs(off).max() < 1e-3  # in standard uncertainties
-
+    found, oracle = fitted_as_the_oracle(groups, start, hold, noise)
     np.testing.assert_array_equal(found.covariance_columns, np.flatnonzero(~hold))
-    scaled = found.covariance / np.outer(u, u)
-    np.testing.assert_allclose(scaled, covariance / np.outer(u, u), rtol=0, atol=1e-4)
     observations = sum(g.residuals(start, g.unknowns(start)).size for g in groups)
     assert found.observations == observations
     if noise is not None:

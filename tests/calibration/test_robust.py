@@ -134,23 +134,19 @@ def test_what_a_reading_counts_is_the_weight_of_its_loss(loss):
     """By how far off it is in units of the scatter; three coordinates have another constant than one length."""
     truth, rng = table_4(), np.random.default_rng(12)
     group, _ = with_outliers(noisy_lengths(truth, rng), truth, rng)
-    found = fit(truth, group, loss)
-    far = found.lengths(0) / {"huber": 1.345, "cauchy": 2.3849, "tukey": 4.6851}[loss]
-    expected = {
-        "huber": 1 / np.maximum(far, 1.0),
-        "cauchy": 1 / (1 + far**2),
-        "tukey": np.maximum(1 - far**2, 0.0) ** 2,
-    }[loss]
-    assert abs(found.counted(0) - expected).max() < 0.03
     placed = virtual.coordinates(truth, rng, 150, False, TOUCHES)
-    found = fit(truth, placed, loss)
-    far = found.lengths(0) / {"huber": 1.628, "cauchy": 2.6656, "tukey": 5.4902}[loss]
-    expected = {
-        "huber": 1 / np.maximum(far, 1.0),
-        "cauchy": 1 / (1 + far**2),
-        "tukey": np.maximum(1 - far**2, 0.0) ** 2,
-    }[loss]
-    assert abs(found.counted(0) - expected).max() < 0.03
+    for readings, constants in (
+        (group, {"huber": 1.345, "cauchy": 2.3849, "tukey": 4.6851}),
+        (placed, {"huber": 1.628, "cauchy": 2.6656, "tukey": 5.4902}),
+    ):
+        found = fit(truth, readings, loss)
+        far = found.lengths(0) / constants[loss]
+        expected = {
+            "huber": 1 / np.maximum(far, 1.0),
+            "cauchy": 1 / (1 + far**2),
+            "tukey": np.maximum(1 - far**2, 0.0) ** 2,
+        }[loss]
+        assert abs(found.counted(0) - expected).max() < 0.03
 
 
 def test_a_rough_artefact_does_not_hide_an_outlier_of_a_fine_one():

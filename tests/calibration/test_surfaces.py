@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.oracle import fits, virtual
+from tests.oracle.comparison import fitted_as_the_oracle
 from tests.oracle.core import core_arm, core_problem, nothing_held
 from tests.oracle.observed import Lengths
 from tests.oracle.published import table_2, table_4
@@ -119,15 +120,7 @@ def test_optimum_and_covariance_are_scipys(readings, noise):
     if readings is one_flat:  # it sees too little for all of the arm
         hold[:] = True
         hold[[4, 8, 12, 13, 16, 24, 25]] = False
-    found = _core.fit(core_problem(truth, groups, noise), hold)
-    assert found.converged
-    ours = truth.with_parameters(found.parameters)
-    oracle = fits.fit(groups, ours, ~hold, noise, white_at=ours)
-    covariance = oracle.covariance(stated=noise is not None)
-    u = np.sqrt(np.diag(covariance))
-    assert found.cost == pytest.approx(oracle.cost, rel=3e-6)
-    assert (abs(ours.parameters - oracle.arm.parameters)[~hold] / u).max() < 1e-3
-    np.testing.assert_allclose(found.covariance / np.outer(u, u), covariance / np.outer(u, u), rtol=0, atol=1e-4)
+    found, _ = fitted_as_the_oracle(groups, truth, hold, noise)
     assert found.observations == sum(len(g.residuals(truth, g.unknowns(truth))) for g in groups)
 
 

@@ -30,6 +30,7 @@ from ulna.cli.printed.calibration import calibration_report, equations, where_to
 from ulna.cli.printed.cross_validation import cross_validation_report
 from ulna.cli.printed.figures import per_placement
 from ulna.cli.printed.identification import determined_in_words
+from ulna.cli.printed.tables import table
 from ulna.ground.digits import decimals, figure_mm, fixed, quantity, uncertainty
 
 
@@ -171,6 +172,13 @@ def test_a_cross_validation_fits_the_terminal(
     assert max(len(line) for line in text.splitlines()) <= width
     assert "front_2 (!)" in text
     assert "probe at least 10 mm off the last axis" in " ".join(text.split())
+
+
+def test_a_line_break_in_a_name_moves_no_other_cell() -> None:
+    console = Console(file=io.StringIO(), width=80)
+    console.print(table("", ["name", "mm"], [["a\nb", "1.5"], ["", ""], [":art:", "2.5"]]))
+    lines = [line.split() for line in console.file.getvalue().splitlines()]  # type: ignore[attr-defined]
+    assert lines[-3:] == [["a", "b", "1.5"], [], [":art:", "2.5"]]
 
 
 def test_names_are_never_markup() -> None:

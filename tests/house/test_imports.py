@@ -58,7 +58,8 @@ def modules(root: Path) -> dict[str, Path]:
 
 
 def imported(tree: ast.AST, known: Iterable[str]) -> list[tuple[str, int]]:
-    """(module, line) of every import of ulna: at the top, inside a function, or for type checking only."""
+    """(module, line) of every import of ulna: at the top, inside a function, for type checking only, or by a text that
+    names a module."""
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "ulna":
@@ -67,6 +68,8 @@ def imported(tree: ast.AST, known: Iterable[str]) -> list[tuple[str, int]]:
                 found.append((full if full in known else node.module, node.lineno))
         elif isinstance(node, ast.Import):
             found += [(alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "ulna"]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and "." in node.value:
+            found += [(node.value, node.lineno)] if node.value in known else []
     return found
 
 
@@ -133,13 +136,14 @@ def test_no_files_import_each_other_in_a_circle(root):
 def test_the_checks_see_what_they_should():
     source = (
         "from ulna.cli import output\ndef f():\n    import ulna.documents.write\n"
-        "if TYPE_CHECKING:\n    from ulna.study.study import Study\n"
+        "if TYPE_CHECKING:\n    from ulna.study.study import Study\nLATER = {'f': 'ulna.cli.f'}\nNONE = 'ulna.cli.g'\n"
     )
-    known = ["ulna.cli", "ulna.cli.output", "ulna.documents.write", "ulna.study.study"]
-    assert imported(ast.parse(source), known) == [
+    known = ["ulna.cli", "ulna.cli.f", "ulna.cli.output", "ulna.documents.write", "ulna.study.study"]
+    assert sorted(imported(ast.parse(source), known), key=lambda found: found[1]) == [
         ("ulna.cli.output", 1),
         ("ulna.documents.write", 3),
         ("ulna.study.study", 5),
+        ("ulna.cli.f", 6),
     ]
     assert circle_in({"a": ["b"], "b": ["c"], "c": ["a"]}) == ["a", "b", "c", "a"]
     assert circle_in({"a": ["b", "c"], "b": ["c"]}) == []

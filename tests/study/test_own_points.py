@@ -9,7 +9,7 @@ import numpy as np
 import polars as pl
 import pytest
 from tests.foreign_tables import WRITERS, cells, dialect, sheet
-from tests.small_study import ARM, BARS, STUDY, SmallStudy, says
+from tests.small_study import ARM, BARS, MM_RAD, STUDY, SmallStudy, says
 
 import ulna
 from ulna import InputWarning, Study
@@ -197,11 +197,9 @@ def test_what_a_features_file_is_told(tmp_path: Path) -> None:
     says(small.error(), f"{key}': says how a file is written", "'features' names none", "Remove it")
 
 
-IPA = """\
-format = "ulna-study/1"
-arm = "arm.toml"
-units = { length = "mm", angle = "rad" }
-
+IPA = (
+    MM_RAD
+    + """\
 [[readings]]
 file = "FILE"
 separator = ";"
@@ -223,6 +221,7 @@ z = "measurement_z"
 [artefact.tracker]
 kind = "points"
 """
+)
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the measurements of ../shared/data are not there")

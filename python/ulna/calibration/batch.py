@@ -6,7 +6,6 @@ import dataclasses
 import json
 import re
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
@@ -18,11 +17,11 @@ from ulna.calibration.provenance import provenance
 from ulna.calibration.result import FILES, Result
 from ulna.formats.output import refuse_inputs
 from ulna.formats.toml import read_json
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.study.study import Study
 from ulna.work.pieces import Threads, Workers
 
-Progress = Callable[[str, int, int], None]
 Status = Literal["converged", "not-converged", "refused"]
 
 FORMAT = "ulna-batch/1"

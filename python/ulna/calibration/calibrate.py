@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import Any
 
@@ -12,11 +11,10 @@ from ulna.calibration.extras import judge_extras
 from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
+from ulna.ground.arrays import Progress
 from ulna.study.assembly import assemble
 from ulna.study.options import with_options
 from ulna.study.study import Study
-
-Progress = Callable[[str, int, int], None]
 
 
 def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) -> Result:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -26,6 +25,7 @@ from ulna.calibration.result_file import CrossValidationFile, ProvenanceEntry
 from ulna.calibration.running import run_fit
 from ulna.calibration.summary import GroupFigures
 from ulna.formats.output import output_folder
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
 from ulna.study.options import with_options
@@ -34,7 +34,6 @@ from ulna.study.study import Study
 
 FORMAT: Literal["ulna-cross-validation/1"] = "ulna-cross-validation/1"
 FILES = ("cross-validation.json",)
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass

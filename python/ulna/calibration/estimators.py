@@ -17,13 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import Assembled
 from ulna.study.data import FitOptions
 from ulna.study.study import Study
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 #: members of a population for each parameter, at the least
 MEMBERS = 4

@@ -9,7 +9,7 @@ by Student's factor). Of harmonics of several orders each is judged besides, as 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -20,11 +20,11 @@ from ulna.calibration.figures import overall_figures
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import Figures
 from ulna.calibration.running import run_fit
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
 from ulna.study.study import Study
 
-Progress = Callable[[str, int, int], None]
 Verdict = Literal["earned", "undecided", "not-earned"]
 
 #: more placements than this are dealt into folds

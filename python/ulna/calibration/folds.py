@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.artefacts.kinds import kind_of
+from ulna.ground.arrays import I64, Bool
 from ulna.ground.errors import UlnaInputError
 from ulna.study.study import Study
-
-Bool = NDArray[np.bool_]
-I64 = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

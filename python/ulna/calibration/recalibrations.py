@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -12,16 +11,13 @@ from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.ground.arrays import Arrays
+from ulna.ground.arrays import F64, Arrays, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
 from ulna.study.study import Study
 from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 PIECE_RUNS = 500
 """Calibrations in a piece: some tens of milliseconds, next to which handing it over costs little."""

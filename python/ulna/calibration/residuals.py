@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     import ulna._core as _core
 
 
-class ResidualEntry(Open):
-    """One reading. Of point readings x, y, z: tip minus where the feature stands, in the base frame."""
+class ReadingEntry(Open):
+    """Which reading an entry is about."""
 
     row: int
     """Data row of the file, from 1."""
@@ -27,6 +27,11 @@ class ResidualEntry(Open):
     placement: str
     feature: str | None = None
     probe: str
+
+
+class ResidualEntry(ReadingEntry):
+    """One reading. Of point readings x, y, z: tip minus where the feature stands, in the base frame."""
+
     x_mm: float | None = None
     y_mm: float | None = None
     z_mm: float | None = None

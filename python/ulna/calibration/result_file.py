@@ -16,7 +16,7 @@ from ulna.arm.tables import CartesianTip
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import FigureEntry, PlacementEntry
-from ulna.calibration.residuals import ResidualEntry
+from ulna.calibration.residuals import ReadingEntry, ResidualEntry
 from ulna.calibration.summary import FitSummary, GroupFigures, Parameter
 from ulna.formats.models import Open
 
@@ -46,15 +46,9 @@ class CovarianceEntry(Open):
     """Square, in the order of names; null where it cannot be estimated."""
 
 
-class OutlierEntry(Open):
+class OutlierEntry(ReadingEntry):
     """A reading far off the rest of its artefact's."""
 
-    row: int
-    file: str
-    artefact: str
-    placement: str
-    feature: str | None = None
-    probe: str
     norm_mm: float
     times_scatter: float
     counted: float | None = None

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import Assembled, assemble
 from ulna.study.study import Study
 
 if TYPE_CHECKING:
     import ulna._core as _core
-
-Progress = Callable[[str, int, int], None]
 
 
 def run_fit(

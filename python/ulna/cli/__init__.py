@@ -6,25 +6,12 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.batch import batch
-from ulna.cli.calibrate import calibrate
-from ulna.cli.certificate import certificate
-from ulna.cli.cross_validate import cross_validate
-from ulna.cli.evaluate import evaluate
-from ulna.cli.exporting import app as exporting
-from ulna.cli.identify import identify
-from ulna.cli.importing import app as importing
+from ulna.cli.commands import Commands
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
-from ulna.cli.measure import measure
-from ulna.cli.plan import plan
-from ulna.cli.report import report
-from ulna.cli.reproduce import reproduce
-from ulna.cli.simulate import simulate
-from ulna.cli.uncertainty import uncertainty
-from ulna.cli.verify import verify
 
 app = typer.Typer(
     name="ulna",
+    cls=Commands,
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",
@@ -53,23 +40,6 @@ def ulna(
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
-
-
-app.command("calibrate")(calibrate)
-app.command("identify")(identify)
-app.command("evaluate")(evaluate)
-app.command("measure")(measure)
-app.command("uncertainty")(uncertainty)
-app.command("cross-validate")(cross_validate)
-app.command("certificate")(certificate)
-app.command("batch")(batch)
-app.command("simulate")(simulate)
-app.command("plan")(plan)
-app.command("report")(report)
-app.command("verify")(verify)
-app.command("reproduce")(reproduce)
-app.add_typer(importing, name="import")
-app.add_typer(exporting, name="export")
 
 
 def main() -> None:

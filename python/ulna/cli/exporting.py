@@ -14,6 +14,7 @@ app = typer.Typer(
     name="export",
     help="Write an arm, calibrated or not, in the form that another program takes.",
     no_args_is_help=True,
+    add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, RenderableType
 from rich.table import Table
 
-Progress = Callable[[str, int, int], None]
+if TYPE_CHECKING:
+    from ulna.ground.arrays import Progress  # loads NumPy, which a list of names does not need
 
 _PROGRESS_AFTER_S = 1.0
 _AS_WIDE_AS_IT_IS = 10_000
@@ -38,8 +39,8 @@ def print_json(document: Mapping[str, Any]) -> None:
 
 def print_renderable(*parts: RenderableType) -> None:
     """On stdout. Where a table is wider than the terminal its lines run over: no number is ever cut or broken."""
-    narrow = _Out(file=sys.stdout, highlight=False)
-    wide = _Out(file=sys.stdout, highlight=False, width=_AS_WIDE_AS_IT_IS)
+    narrow = _Out(file=sys.stdout, highlight=False, emoji=False)
+    wide = _Out(file=sys.stdout, highlight=False, emoji=False, width=_AS_WIDE_AS_IT_IS)
     for part in parts:
         whole = isinstance(part, Table) and all(column.no_wrap for column in part.columns)
         (wide if whole else narrow).print(part, crop=False)

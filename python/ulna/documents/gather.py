@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -28,10 +27,10 @@ from ulna.documents.sources.result import read_calibration
 from ulna.documents.sources.source import Calibration, Source, Taken, take
 from ulna.documents.sources.study import find_study
 from ulna.documents.sources.verification import VERIFICATION
+from ulna.ground.arrays import Progress
 from ulna.study.study import Study
 
 T = TypeVar("T")
-Progress = Callable[[str, int, int], None]
 
 _STEPS = 4
 """The result; the study; what it says; what is made of it."""

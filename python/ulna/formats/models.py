@@ -62,6 +62,11 @@ def _kind(table: Any) -> str:
     return f"<{kind}>"
 
 
+def table_or_plain(value: Any) -> str:
+    """Which of two tags, `<table>` and `<plain>`: a discriminator of what may be a table, or one plain value for it."""
+    return "<table>" if isinstance(value, dict | BaseModel) else "<plain>"
+
+
 Model = TypeVar("Model", bound=BaseModel)
 
 

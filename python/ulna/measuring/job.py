@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,15 +21,13 @@ from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, read_header, stream
 from ulna.formats.toml import check_format, read_json
 from ulna.formats.units import MM_PER
+from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
 from ulna.study.readings.checks import Outside, check_scale
 from ulna.study.readings.columns import check_columns, known_columns
 from ulna.study.readings.conditions import check_values, columns_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 
 class MeasureJob:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, Literal
 
-import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.output import new_file, refuse_inputs
+from ulna.ground.arrays import F64, Progress
 from ulna.measuring.job import MeasureJob
 
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 Angle = Literal["rad", "deg", "counts"]
 
 

@@ -10,14 +10,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import NOTHING, Conditions, some_of
 from ulna.arm.directions import steps, worth_naming
+from ulna.ground.arrays import F64
 from ulna.work.cores import available_cores
-
-F64 = NDArray[np.float64]
 
 DIAGONAL, BESIDE = [0, 3, 5], [1, 2, 4]
 """Of xx, xy, xz, yy, yz, zz."""

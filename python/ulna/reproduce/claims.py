@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rich import box
 from rich.table import Table
-from rich.text import Text
+
+from ulna.ground.terminal import plain_table
 
 FORMAT = "ulna-reproduction/1"
 
@@ -22,22 +22,6 @@ class Claim:
     ours: str
     agrees: bool | None
     """None: not asked. The work reports a limit of its own method, or nothing that we know of."""
-
-
-def plain_table(title: str, caption: str | None = None) -> Table:
-    """A table without a frame."""
-    return Table(
-        title=Text(title, style="bold"),
-        title_justify="left",
-        caption=caption,
-        caption_justify="left",
-        caption_style="",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-        header_style="",
-    )
 
 
 def agrees(claim: Claim) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.effects.effects import Extra
+from ulna.arm.stated import PositiveEach
 from ulna.artefacts.kinds import ArtefactTable
-from ulna.formats.models import Strict
+from ulna.formats.models import Strict, table_or_plain
 from ulna.formats.numbers import Positive
 from ulna.formats.units import Units
 from ulna.study.data import Loss, Method
@@ -18,19 +19,10 @@ from ulna.study.readings.columns import ReadingsEntry
 class NoiseTable(Strict):
     """Standard deviations of the readings."""
 
-    encoder: (
-        Annotated[
-            Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_noise_kind)
-        ]
-        | None
-    ) = None
+    encoder: PositiveEach | None = None
     """In the study's angle unit; one number, or one per joint."""
     seat: Positive | None = None
     """Of a touch, per coordinate, in the study's length unit."""
-
-
-def _noise_kind(encoder: Any) -> str:
-    return "<each>" if isinstance(encoder, list) else "<all>"
 
 
 class PriorTable(Strict):
@@ -42,12 +34,8 @@ class PriorTable(Strict):
     """Standard deviation."""
 
 
-def _prior_kind(prior: Any) -> str:
-    return "<table>" if isinstance(prior, dict | PriorTable) else "<deviation>"
-
-
 PriorValue = Annotated[
-    Annotated[Positive, Tag("<deviation>")] | Annotated[PriorTable, Tag("<table>")], Discriminator(_prior_kind)
+    Annotated[Positive, Tag("<plain>")] | Annotated[PriorTable, Tag("<table>")], Discriminator(table_or_plain)
 ]
 
 
@@ -104,4 +92,4 @@ class StudyFile(Strict):
     readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
     artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
     noise: NoiseTable | None = None
-    fit: FitTable = FitTable()
+    fit: FitTable = Field(default_factory=FitTable)

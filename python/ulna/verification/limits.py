@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import Discriminator, Tag
 
-from ulna.formats.models import Strict
+from ulna.formats.models import Strict, table_or_plain
 from ulna.formats.numbers import Amount, Coverage, Positive
 
 Rule = Literal["1.65u", "U", "simple"]
@@ -21,12 +21,8 @@ class LimitTable(Strict):
     """No unit: 40000 is 25 µm for each metre."""
 
 
-def _limit_kind(limit: Any) -> str:
-    return "<grows>" if isinstance(limit, dict | LimitTable) else "<constant>"
-
-
 LimitValue = Annotated[
-    Annotated[Positive, Tag("<constant>")] | Annotated[LimitTable, Tag("<grows>")], Discriminator(_limit_kind)
+    Annotated[Positive, Tag("<plain>")] | Annotated[LimitTable, Tag("<table>")], Discriminator(table_or_plain)
 ]
 
 

@@ -82,8 +82,6 @@ class FigureResult:
 class TestResult:
     """One test of the profile in one state of the arm."""
 
-    __test__ = False  # no test of pytest's
-
     name: str
     kind: str
     readings: int

@@ -96,8 +96,6 @@ class FigureTable(Written):
 class TestedTable(Written):
     """One test."""
 
-    __test__ = False
-
     name: str
     kind: str
     readings: int

@@ -22,8 +22,6 @@ FILES = (PLAN, TOUCHES)
 class TestPlan:
     """A verify file and its list of touches."""
 
-    __test__ = False  # no test of pytest's
-
     profile: Profile
     filled: Filled
     encoders: bool

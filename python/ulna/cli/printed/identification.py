@@ -13,11 +13,7 @@ from ulna.arm.arm import Arm
 from ulna.arm.directions import combination, sentence
 from ulna.calibration.identify import Identification
 from ulna.cli.printed.tables import heading, listed
-from ulna.documents.languages.text import plain
-from ulna.documents.languages.words import Words
 from ulna.ground.digits import uncertainty
-
-ENGLISH = Words("en")
 
 
 def identification_report(found: Identification, arm: Arm) -> list[RenderableType]:
@@ -63,7 +59,11 @@ def _lost(direction: Mapping[str, Any]) -> Sequence[str]:
 
 def _cause(key: str) -> str:
     """In the words of reports; a cause that a later core found has none yet."""
-    return plain(ENGLISH(f"cause.{key}")) if key and ENGLISH.has(f"cause.{key}") else key
+    from ulna.documents.languages.text import plain  # most arms lack nothing, and are not told why
+    from ulna.documents.languages.words import Words
+
+    english = Words("en")
+    return plain(english(f"cause.{key}")) if key and english.has(f"cause.{key}") else key
 
 
 def _weak(direction: Mapping[str, Any]) -> Sequence[str]:

@@ -4,28 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rich import box
 from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from ulna.ground.terminal import plain_table
+
 
 def table(title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> Table:
     """A table; the first `left` columns hold words, the others numbers. A head may have several lines."""
-    made = Table(
-        title=Text(title, style="bold"),
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-        header_style="",
-    )
+    made = plain_table(title)
     for k, head in enumerate(heads):
         made.add_column(escape(head), justify="left" if k < left else "right", no_wrap=True, vertical="bottom")
-    for row in rows:
-        made.add_row(*(Text(cell) for cell in row))  # neither markup nor ":art:" for a picture
+    # Lines of one row: rich measures and draws cell by cell, which for 30 parameters takes longer than to fit them.
+    # A Text is neither markup nor has it ":art:" for a picture.
+    columns = [Text("\n".join(cell.replace("\n", " ") for cell in column)) for column in zip(*rows, strict=True)]
+    if columns:
+        made.add_row(*columns)
     return made
 
 

@@ -11,15 +11,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import fdtri
 
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
+from ulna.ground.arrays import F64
 from ulna.uncertainties.gum import coverage_factor
 from ulna.uncertainties.regions import coverage_factor_of_region
-
-F64 = NDArray[np.float64]
 
 #: coverage probability of every uncertainty in a certificate
 P = 0.95

@@ -5,21 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
+from ulna.ground.arrays import F64
 from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.result_file import TestedTable, VerificationFile
-
-F64 = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class TestedLengths:
     """Length errors of an acceptance test over their lengths."""
-
-    __test__ = False  # no test of pytest's
 
     state: str
     """"as-found" or "as-left"."""

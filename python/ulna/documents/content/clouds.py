@@ -6,17 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions, some_of
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64
 from ulna.study.assembly import conditions_of
 from ulna.study.study import Study
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 RANGES = 24
 """Equal ranges of an abscissa in which means are taken."""

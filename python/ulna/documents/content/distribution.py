@@ -7,14 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from ulna.artefacts.kinds import KINDS
 from ulna.calibration.placements import PlacementFigures
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.ground.arrays import F64, I64
 
 MOST_BINS = 80
 

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.probes import ProbeView
 from ulna.calibration.observability import indices
 from ulna.calibration.result import Result
+from ulna.ground.arrays import F64
 from ulna.uncertainties.gum import coverage_factor
-
-F64 = NDArray[np.float64]
 
 COVERAGE = 0.95
 """Of every U of a parameter."""

@@ -6,14 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from numpy.typing import NDArray
 
 from ulna.calibration.result import Result
+from ulna.ground.arrays import F64, I64, Bool
 from ulna.study.study import Study
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Bool = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

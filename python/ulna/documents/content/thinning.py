@@ -6,13 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.documents.languages.said import Said
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Bool = NDArray[np.bool_]
+from ulna.ground.arrays import F64, I64, Bool
 
 
 @dataclass(frozen=True)

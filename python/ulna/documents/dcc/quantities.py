@@ -10,13 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.documents.certified.parameters import last_place
 from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.dcc.units import dsi_product, dsi_unit
-
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 
 @dataclass(frozen=True)

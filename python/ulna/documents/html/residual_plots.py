@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.documents.content.clouds import Cloud
 from ulna.documents.content.distribution import Sample
@@ -15,9 +14,7 @@ from ulna.documents.html.markup import label, labels
 from ulna.documents.html.plots import INK, MAIN, OUTLIER, Plot, axis, layout, line, numbers, points
 from ulna.documents.languages.text import joined, named, number
 from ulna.documents.languages.words import Words
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.ground.arrays import I64
 
 MOST_POINTS = 1500
 """Of one cloud; besides them all outliers."""

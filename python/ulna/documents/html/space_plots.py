@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ulna.documents.content.clouds import Quiver
 from ulna.documents.content.readings import ReadingRows
@@ -15,9 +14,7 @@ from ulna.documents.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, la
 from ulna.documents.html.residual_plots import where
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.ground.arrays import F64, I64
 
 MOST_BARS = 600
 MOST_VECTORS = 1500

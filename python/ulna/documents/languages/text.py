@@ -17,24 +17,20 @@ Style = Literal["english", "aside", "pass", "fail", "undecided", "none"]
 
 
 @dataclass(frozen=True)
-class Name:
+class _Letters:
+    text: str
+
+
+class Name(_Letters):
     """What a file says: its direction is its own, and nothing of it is markup."""
 
-    text: str
 
-
-@dataclass(frozen=True)
-class Command:
+class Command(_Letters):
     """What to type."""
 
-    text: str
 
-
-@dataclass(frozen=True)
-class Code:
+class Code(_Letters):
     """Letters of equal width: a hash, options."""
-
-    text: str
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ulna.documents.languages.said import Said
-from ulna.documents.sources.source import Calibration, Source
-from ulna.formats.toml import check_format, read_json
+from ulna.documents.sources.source import Calibration, Source, json_of
 
 FORMAT = "ulna-cross-validation"
-
-
-def _read(path: Path, _: Calibration) -> tuple[dict[str, Any], str]:
-    document, digest = read_json(path, "a cross-validation.json")
-    check_format(document, path, FORMAT)
-    return document, digest
 
 
 def _remarks(document: dict[str, Any], path: Path, calibration: Calibration) -> list[Said]:
@@ -30,4 +23,4 @@ def _digests(made: Mapping[str, Any]) -> list[str]:
     return [file["sha256"] for file in made.get("files", [])]
 
 
-CROSS_VALIDATION = Source("cross-validation", FORMAT, _read, _remarks)
+CROSS_VALIDATION = Source("cross-validation", FORMAT, json_of(FORMAT, "a cross-validation.json"), _remarks)

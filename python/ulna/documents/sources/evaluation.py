@@ -10,17 +10,10 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.documents.languages.said import Said
-from ulna.documents.sources.source import Calibration, Source
-from ulna.formats.toml import check_format, read_json
+from ulna.documents.sources.source import Calibration, Source, json_of
 from ulna.ground.errors import UlnaInputError
 
 FORMAT = "ulna-evaluation"
-
-
-def _read(path: Path, _: Calibration) -> tuple[dict[str, Any], str]:
-    document, digest = read_json(path, "an evaluation.json")
-    check_format(document, path, FORMAT)
-    return document, digest
 
 
 def _remarks(document: dict[str, Any], path: Path, calibration: Calibration) -> list[Said]:
@@ -52,4 +45,4 @@ def _is_of(arm: Arm, document: Mapping[str, Any], path: Path) -> bool:
     return True
 
 
-EVALUATION = Source("evaluation", FORMAT, _read, _remarks)
+EVALUATION = Source("evaluation", FORMAT, json_of(FORMAT, "an evaluation.json"), _remarks)

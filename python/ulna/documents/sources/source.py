@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ulna.calibration.result import Result
 from ulna.documents.languages.said import Said
+from ulna.formats.toml import check_format, read_json
 
 T = TypeVar("T")
 
@@ -44,6 +45,17 @@ class Source(Generic[T]):
     remarks: Callable[[T, Path, Calibration], list[Said]]
     """What must be said where it is of another arm, or does not tell. Raises UlnaInputError where it must not be
     used at all."""
+
+
+def json_of(format_name: str, what: str) -> Callable[[Path, Calibration], tuple[dict[str, Any], str]]:
+    """How a JSON file of Ulna's is read, as it stands; what: how messages call it, "an evaluation.json"."""
+
+    def read(path: Path, _: Calibration) -> tuple[dict[str, Any], str]:
+        document, digest = read_json(path, what)
+        check_format(document, path, format_name)
+        return document, digest
+
+    return read
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,21 @@ from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
 from ulna.formats.output import output_folder
 
+_HEAD = """\
+format = "ulna-study/1"
+arm = "arm.toml"
+units = {{ length = "mm", angle = "rad" }}
+
+[[readings]]
+file = "{readings}"
+
+"""
+
+
+def study_text(readings: str, artefact: str) -> str:
+    """A study of one table beside it, in mm and rad; `artefact`: the text of what was touched."""
+    return _HEAD.format(readings=readings) + artefact
+
 
 def write_study_folder(
     folder: Path, arm: Arm, studies: dict[str, str], tables: dict[str, pl.DataFrame], force: bool = False

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from ulna.exchange.importers.folder import write_study_folder
+from ulna.exchange.importers.folder import study_text, write_study_folder
 from ulna.exchange.importers.robots import ur10
 from ulna.formats.table import read_table
 from ulna.formats.tables.text import TextTable
@@ -42,14 +42,7 @@ COLUMNS = {
 
 WHAT = "a table with semicolons and a header shoulder_pan_joint;…;measurement_x;…"
 
-STUDY = """\
-format = "ulna-study/1"
-arm = "arm.toml"
-units = {{ length = "mm", angle = "rad" }}
-
-[[readings]]
-file = "{readings}"
-
+ARTEFACT = """\
 [artefact.tracker]              # every reading is a point of its own; the tracker's place is unknown
 kind = "points"
 frame = "free"
@@ -90,7 +83,7 @@ def import_ipa_ur10(
     studies: dict[str, str] = {}
     tables: dict[str, pl.DataFrame] = {}
     for study, (rows, mask) in parts.items():
-        studies[f"{study}.toml"] = STUDY.format(readings=f"{rows}.{ending}")
+        studies[f"{study}.toml"] = study_text(f"{rows}.{ending}", ARTEFACT)
         tables[f"{rows}.{ending}"] = readings.filter(mask)
     write_study_folder(out, ur10(), studies, tables, force=force)
     return int(fitted.sum()), int((~fitted).sum())

@@ -12,7 +12,7 @@ from pathlib import Path
 import polars as pl
 
 from ulna.arm.arm import Arm
-from ulna.exchange.importers.folder import write_study_folder
+from ulna.exchange.importers.folder import study_text, write_study_folder
 from ulna.exchange.importers.robots import panda
 from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import read_chain
@@ -26,14 +26,7 @@ SEATS = {"hole_0.csv": "A", "hole_1.csv": "B"}
 #: drawings beside the robots' folders, by the start of a folder's name
 DRAWINGS = {"kuka": "iiwa14.urdf", "dinova": "gen3lite.urdf"}
 
-STUDY = """\
-format = "ulna-study/1"
-arm = "arm.toml"
-units = {{ length = "mm", angle = "rad" }}
-
-[[readings]]
-file = "{readings}"
-
+ARTEFACT = """\
 [artefact.tool]                 # two sockets; a placement is a place where the tool stood
 kind = "bar"
 length = {length!r}
@@ -68,7 +61,7 @@ def import_mukca(
         counts[place.name] = len(table)
     readings = "readings.parquet" if parquet else "readings.csv"
     table = pl.concat(pieces).select("placement", "feature", *(f"q{k}" for k in range(1, arm.n + 1)))
-    study = STUDY.format(readings=readings, length=float(length_mm))
+    study = study_text(readings, ARTEFACT.format(length=float(length_mm)))
     write_study_folder(out, arm, {"study.toml": study}, {readings: table}, force=force)
     return counts
 

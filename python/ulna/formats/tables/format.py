@@ -1,8 +1,8 @@
 """What a format of tables owes: how its files are recognised, opened, and called in messages.
 
-A new format is one file beside this one, which makes a `TableFormat` and its own `ulna.formats.header.Header`, and its
-row in `registry.py`; nobody else asks what kind of file a table is. `tests/contract/test_table_formats.py` holds every
-row to what is written here.
+A new format is one file beside this one, which makes its own `ulna.formats.header.Header` of a file, and its row in
+`registry.py`, a `TableFormat`; nobody else asks what kind of file a table is. `tests/contract/test_table_formats.py`
+holds every row to what is written here.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ulna.formats.layout import Layout
 
 @dataclass(frozen=True, kw_only=True)
 class TableFormat:
-    """One format. Its module loads no heavy library before a file of it is opened."""
+    """One format. What reads it is loaded when a file of it is opened."""
 
     name: str
     """Short: "Excel"."""

@@ -22,13 +22,9 @@ from ulna.formats.tables.arrays import (
     no_such_part,
     unreadable,
 )
-from ulna.formats.tables.format import TableFormat
 from ulna.ground.arrays import Texts
 from ulna.ground.errors import UlnaInputError
 
-_MARK = b"\x89HDF\r\n\x1a\n"
-#: a file may begin with a block of somebody else's, of one of these lengths; MATLAB writes 512 bytes
-_OFFSETS = (0, 512, 1024, 2048, 4096, 8192, 16384, 32768)
 _MATLAB_NUMBERS = ("double", "single", "logical", "int", "uint")
 _MOST_LISTED = 1000
 
@@ -186,14 +182,3 @@ def _cell_text(data: Any) -> str:
         value = float(values.reshape(-1)[0])
         return str(int(value)) if value.is_integer() else str(value)
     raise NoTextError("a cell holds something else than a text or a number")
-
-
-HDF5 = TableFormat(
-    name="HDF5",
-    listed="HDF5",
-    kind="an HDF5 or MAT 7.3 file",
-    endings=(".h5", ".hdf5", ".mat"),
-    keys=("dataset",),
-    recognised=lambda start: any(start.startswith(_MARK, offset) for offset in _OFFSETS),
-    open=open_hdf5,
-)

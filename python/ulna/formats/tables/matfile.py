@@ -22,7 +22,6 @@ from ulna.formats.tables.arrays import (
     no_such_part,
     unreadable,
 )
-from ulna.formats.tables.format import TableFormat
 from ulna.formats.tables.mat5 import DamagedError, Entry, Strange, Struct, entries, value
 from ulna.ground.arrays import Texts
 
@@ -128,15 +127,3 @@ def texts_of(cells: NDArray[Any]) -> Texts:
             raise NoTextError("a cell holds something else than a text or a number")
         texts[k] = cell
     return texts.reshape(cells.shape)
-
-
-MAT = TableFormat(
-    name="MAT",
-    listed=".mat",
-    kind="a MAT file",
-    endings=(".mat",),
-    keys=("dataset",),
-    # version and byte order, at the end of the text that the file begins with
-    recognised=lambda start: start[124:128] in (b"\x00\x01IM", b"\x01\x00MI"),
-    open=open_mat,
-)

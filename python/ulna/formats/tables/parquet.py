@@ -13,7 +13,6 @@ import polars.exceptions
 from ulna.formats.cells import bad_cell, names_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
-from ulna.formats.tables.format import TableFormat
 from ulna.ground.errors import UlnaInputError
 
 _PAGE_BUFFER_BYTES = 1 << 20
@@ -75,14 +74,3 @@ def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> Parquet
     except (polars.exceptions.PolarsError, OSError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None
-
-
-PARQUET = TableFormat(
-    name="Parquet",
-    listed="Parquet",
-    kind="a Parquet file",
-    endings=(".parquet",),
-    keys=(),
-    recognised=lambda start: start.startswith(b"PAR1"),
-    open=open_parquet,
-)

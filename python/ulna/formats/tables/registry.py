@@ -1,4 +1,7 @@
-"""Which formats of tables there are: one row each."""
+"""Which formats of tables there are: one row each.
+
+What reads a format is loaded when there is such a file: all of them together take as long as a fit of a hundred bars.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,7 @@ from pathlib import Path
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.tables.format import TableFormat
-from ulna.formats.tables.hdf5 import HDF5
-from ulna.formats.tables.matfile import MAT
-from ulna.formats.tables.parquet import PARQUET
-from ulna.formats.tables.text import TEXT
-from ulna.formats.tables.workbook import EXCEL
+from ulna.formats.tables.marks import OLD_OFFICE, PARQUET, ZIP, is_hdf5, is_mat, is_text
 from ulna.ground.errors import UlnaInputError
 
 
@@ -26,13 +25,83 @@ def distinct(formats: Sequence[TableFormat]) -> tuple[TableFormat, ...]:
     return tuple(formats)
 
 
+def _parquet(path: Path, start: bytes, what: str, layout: Layout) -> Header:
+    from ulna.formats.tables.parquet import open_parquet
+
+    return open_parquet(path, start, what, layout)
+
+
+def _excel(path: Path, start: bytes, what: str, layout: Layout) -> Header:
+    from ulna.formats.tables.workbook import open_workbook
+
+    return open_workbook(path, start, what, layout)
+
+
+def _mat(path: Path, start: bytes, what: str, layout: Layout) -> Header:
+    from ulna.formats.tables.matfile import open_mat
+
+    return open_mat(path, start, what, layout)
+
+
+def _hdf5(path: Path, start: bytes, what: str, layout: Layout) -> Header:
+    from ulna.formats.tables.hdf5 import open_hdf5
+
+    return open_hdf5(path, start, what, layout)
+
+
+def _text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
+    from ulna.formats.tables.text import open_text
+
+    return open_text(path, start, what, layout)
+
+
 FORMATS = distinct(
     [
-        PARQUET,
-        EXCEL,
-        MAT,
-        HDF5,
-        TEXT,
+        TableFormat(
+            name="Parquet",
+            listed="Parquet",
+            kind="a Parquet file",
+            endings=(".parquet",),
+            keys=(),
+            recognised=lambda start: start.startswith(PARQUET),
+            open=_parquet,
+        ),
+        TableFormat(
+            name="Excel",
+            listed=".xlsx",
+            kind="an Excel workbook",
+            endings=(".xlsx", ".xlsm"),
+            keys=("sheet", "header"),
+            recognised=lambda start: start.startswith((ZIP, OLD_OFFICE)),
+            open=_excel,
+        ),
+        TableFormat(
+            name="MAT",
+            listed=".mat",
+            kind="a MAT file",
+            endings=(".mat",),
+            keys=("dataset",),
+            recognised=is_mat,
+            open=_mat,
+        ),
+        TableFormat(
+            name="HDF5",
+            listed="HDF5",
+            kind="an HDF5 or MAT 7.3 file",
+            endings=(".h5", ".hdf5", ".mat"),
+            keys=("dataset",),
+            recognised=is_hdf5,
+            open=_hdf5,
+        ),
+        TableFormat(
+            name="CSV",
+            listed="CSV with a header",
+            kind="a CSV file",
+            endings=(".csv", ".txt", ".tsv", ".dat"),
+            keys=("separator", "decimal", "header"),
+            recognised=is_text,
+            open=_text,
+        ),
     ]
 )
 """In the order in which they are asked; text is what has no mark of its own, and comes last."""

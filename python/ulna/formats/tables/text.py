@@ -19,11 +19,10 @@ import polars.exceptions
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.tables.format import TableFormat
+from ulna.formats.tables.marks import UTF16
 from ulna.ground.errors import UlnaInputError
 
 _BLOCK_BYTES = 1 << 20
-_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _NAMES = {";": "semicolons", "\t": "tabs"}
 
 
@@ -237,7 +236,7 @@ class TextTable(Header):
 
 def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
     """A CSV file by its first bytes. Raises UlnaInputError for what is no text, or not written as the layout says."""
-    if start.startswith(_UTF16):
+    if start.startswith(UTF16):
         raise UlnaInputError(f"{path}: the file is UTF-16; expected {what} in UTF-8. Save it as UTF-8.")
     try:
         line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
@@ -283,15 +282,3 @@ def _check_separator(path: Path, line: str, separator: str, layout: Layout) -> N
                 f"{path}: line 1: the columns are separated by {words}; expected commas, and numbers with a decimal "
                 f"point. Say {key}{comma}, or export the table again with commas between columns and points in numbers."
             )
-
-
-TEXT = TableFormat(
-    name="CSV",
-    listed="CSV with a header",
-    kind="a CSV file",
-    endings=(".csv", ".txt", ".tsv", ".dat"),
-    keys=("separator", "decimal", "header"),
-    # UTF-16 is told as what it is
-    recognised=lambda start: b"\x00" not in start or start.startswith(_UTF16),
-    open=open_text,
-)

@@ -20,11 +20,10 @@ from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, Shee
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
-from ulna.formats.tables.format import TableFormat
+from ulna.formats.tables.marks import OLD_OFFICE
 from ulna.formats.tables.workbook_cell import address, stored_cell
 from ulna.ground.errors import UlnaInputError, nearest
 
-_ZIP, _OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
 
 
@@ -145,7 +144,7 @@ def _unreadable(path: Path, what: str, error: Exception) -> UlnaInputError:
 
 def _check_kind(path: Path, start: bytes, what: str) -> None:
     """What else is a zip archive, or was once an Excel workbook."""
-    if start.startswith(_OLD):
+    if start.startswith(OLD_OFFICE):
         raise UlnaInputError(
             f"{path}: this is an old Excel workbook (.xls), or one with a password; expected {what}. Save it as .xlsx "
             "without a password."
@@ -217,14 +216,3 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
         places=used,
         merged=list(sheet.merged_cell_ranges or ()),
     )
-
-
-EXCEL = TableFormat(
-    name="Excel",
-    listed=".xlsx",
-    kind="an Excel workbook",
-    endings=(".xlsx", ".xlsm"),
-    keys=("sheet", "header"),
-    recognised=lambda start: start.startswith((_ZIP, _OLD)),
-    open=open_workbook,
-)

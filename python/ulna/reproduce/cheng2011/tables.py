@@ -8,10 +8,11 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from ulna.ground.terminal import plain_table
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_MM
 from ulna.reproduce.cheng2011.experiment import BARS, START_MM, START_RAD, Calibrated
 from ulna.reproduce.cheng2011.findings import Findings
-from ulna.reproduce.claims import agrees, claims_table, plain_table
+from ulna.reproduce.claims import agrees, claims_table
 
 
 def tables(found: Findings) -> RenderableType:

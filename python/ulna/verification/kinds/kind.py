@@ -22,8 +22,6 @@ from ulna.verification.touches import Touches
 class TestTable(Strict):
     """What a profile says of one test."""
 
-    __test__ = False  # no test of pytest's
-
     kind: str  # each kind has a table of its own, where this is a Literal of its name
 
 
@@ -33,8 +31,6 @@ Table = TypeVar("Table", bound=TestTable)
 @dataclass(frozen=True, kw_only=True)
 class TestKind(Generic[Table]):
     """One kind of acceptance test. Nothing here has a default: what a kind has nothing of, it says."""
-
-    __test__ = False
 
     table: type[Table]
     """Its table in a profile; keys have docstrings, which become the JSON Schema's."""
