@@ -315,6 +315,7 @@ def fit(
     progress: Progress | None = None,
     unknown_signs: Bool | None = None,  # (n,) true: find the joint's sign
     from_parameters: F64 | None = None,  # (parameters,) where the fit begins; the arm's own stay what is nominal
+    poor_above_mm: float | None = None,  # rms from which on a minimum is poor; None: the noise or the reach says
 ) -> Fitted:
     """Calibrate. Raises UlnaError for fewer observations than unknowns; KeyboardInterrupt when interrupted.
     Everything held: evaluate (placements are fitted, the arm is not)."""

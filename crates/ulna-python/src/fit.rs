@@ -40,7 +40,7 @@ fn watched<T: Send>(
 #[pyfunction]
 #[pyo3(signature = (problem, hold, start="given", max_iterations=200, seed=0, search_starts=2000,
                     known_length_mm=1.0, known_angle_rad=0.01, progress=None, unknown_signs=None,
-                    from_parameters=None))]
+                    from_parameters=None, poor_above_mm=None))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit(
     py: Python<'_>,
@@ -55,6 +55,7 @@ pub fn fit(
     progress: Option<Py<PyAny>>,
     unknown_signs: Option<PyReadonlyArray1<'_, bool>>,
     from_parameters: Option<PyReadonlyArray1<'_, f64>>,
+    poor_above_mm: Option<f64>,
 ) -> PyResult<Fitted> {
     let free = free(&problem, &hold)?;
     let options = Options {
@@ -71,6 +72,7 @@ pub fn fit(
         search_starts,
         unknown_signs: unknown_signs.map_or(Ok(0), |mask| bits(&slice(&mask), &problem))?,
         known: Known { length_mm: known_length_mm, angle_rad: known_angle_rad },
+        poor_above_mm,
     };
     let inner = &mut problem.inner;
     let from = from_parameters.as_ref().map(slice);

@@ -33,11 +33,32 @@ class Joint:
     """What people call it; only for messages."""
     limits_rad: tuple[float, float] | None = None
     """Lowest and highest encoder angle; readings outside are warned about."""
+    endless: bool = False
+    """It turns on and on, and its encoder counts the turns; such a joint has no limits."""
     counts_per_turn: float | None = None
     """Encoder counts in one full turn; needed for readings in counts."""
     effects: Effects = NONE
     """What the joint does beyond its geometry."""
 
+    @property
+    def travel_rad(self) -> tuple[float, float] | None:
+        """How far it need turn to take every posture: its limits, or one turn of an endless one; None: nobody said."""
+        return (-math.pi, math.pi) if self.endless else self.limits_rad
 
-#: no arm's joint turns farther than this from its zero: two turns
+    @property
+    def most_rad(self) -> float:
+        """An encoder angle beyond which its unit is asked about: two turns, or as far as its limits."""
+        if self.endless:
+            return math.inf
+        low, high = self.limits_rad or (0.0, 0.0)
+        return max(MOST_RAD, -low, high)
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether it is known to turn all the way round, so that its encoder may have counted turns."""
+        low, high = self.limits_rad or (0.0, 0.0)
+        return self.endless or high - low >= 2.0 * math.pi * (1.0 - 1e-9)
+
+
+#: a joint of which nothing else is said does not turn farther than this from its zero: two turns
 MOST_RAD = 4.0 * math.pi

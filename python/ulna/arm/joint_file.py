@@ -41,6 +41,8 @@ class GeometryTable(Strict):
     name: str | None = None
     limits: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     """Lowest and highest encoder angle, in the file's angle unit."""
+    endless: bool = False
+    """It turns on and on, and its encoder counts the turns: such a joint has no limits."""
     counts_per_turn: Annotated[float, Field(gt=0)] | None = None
     """Needed for readings in counts."""
 
@@ -60,6 +62,11 @@ def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Pat
         raise UlnaInputError(
             f"{path}: key 'joint.{number}.limits': got {table.limits}, expected the lower limit first. Swap them."
         )
+    if table.limits is not None and table.endless:
+        raise UlnaInputError(
+            f"{path}: key 'joint.{number}.endless': got true, but the joint has limits, {table.limits}; expected one "
+            "of them. Remove the limits if it turns on and on, else endless."
+        )
     return Joint(
         theta0_rad=(table.theta0 or 0.0) * units.rad,
         alpha_rad=(table.alpha or 0.0) * units.rad,
@@ -70,6 +77,7 @@ def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Pat
         model=table.model,
         name=table.name,
         limits_rad=None if table.limits is None else (table.limits[0] * units.rad, table.limits[1] * units.rad),
+        endless=table.endless,
         counts_per_turn=table.counts_per_turn,
         effects=Effects(**_beyond(table, number, units, path)),
     )
@@ -117,6 +125,8 @@ def joint_document(joint: Joint, bare: bool) -> dict[str, Any]:
         table |= {"model": joint.model}
     if joint.limits_rad is not None:
         table |= {"limits": list(joint.limits_rad)}
+    if joint.endless:
+        table |= {"endless": True}
     if joint.counts_per_turn is not None:
         table |= {"counts_per_turn": joint.counts_per_turn}
     for effect in EFFECTS.values():

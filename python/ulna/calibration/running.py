@@ -52,6 +52,7 @@ def run_assembled(
             progress=progress,
             unknown_signs=unknown if unknown.any() else None,
             from_parameters=from_parameters,
+            poor_above_mm=options.poor_above_mm,
         )
     except _core.UlnaError as error:
         raise UlnaInputError(f"{study.label}: {error}") from None

@@ -143,7 +143,7 @@ class MeasureJob:
         q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
         q_rad = q if self._angle == "rad" else q * self._rad_per
         row = np.arange(piece.before + 1, piece.before + len(q) + 1)
-        check_scale(q_rad, "q", self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
+        check_scale(q_rad, "q", self.arm, self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
         self._outside.add(q_rad, row)
         return q_rad
 

@@ -25,16 +25,18 @@ CELLS = 20
 
 
 def travel_or_limits(arm: Arm, travel_rad: F64 | None, label: str) -> F64:
-    """(n, 2) how far the joints turn: as stated, else the arm's limits. Raises UlnaInputError without either."""
+    """(n, 2) how far the joints turn: as stated, else the arm's limits, of an endless joint one turn. Raises
+    UlnaInputError without either."""
     if travel_rad is not None:
         return np.array(travel_rad, dtype=np.float64)
     for k, joint in enumerate(arm.joints, start=1):
-        if joint.limits_rad is None:
+        if joint.travel_rad is None:
             raise UlnaInputError(
                 f"{label}: joint {k} of arm '{arm.name}' has no limits; expected how far each joint turns, for a "
-                f"posture that the arm cannot take is of no use. Add limits to the arm file, or [travel] to {label}."
+                f"posture that the arm cannot take is of no use. Add limits (or endless = true) to the arm "
+                f"file, or [travel] to {label}."
             )
-    return np.array([joint.limits_rad for joint in arm.joints], dtype=np.float64)
+    return np.array([joint.travel_rad for joint in arm.joints], dtype=np.float64)
 
 
 @dataclass(frozen=True)

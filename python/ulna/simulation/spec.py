@@ -120,7 +120,7 @@ class Simulation:
         if self.travel_rad is not None:
             travel = np.array(self.travel_rad, dtype=np.float64)
         else:
-            travel = np.array([joint.limits_rad or (-np.pi, np.pi) for joint in self.arm.joints])
+            travel = np.array([joint.travel_rad or (-np.pi, np.pi) for joint in self.arm.joints])
         noise = np.zeros(self.arm.n) if self.encoder_rad is None else self.encoder_rad
         margin = 6.0 * noise + (0.0 if self.step_rad is None else self.step_rad)
         return travel + np.outer(margin, [1.0, -1.0])

@@ -84,6 +84,9 @@ class FitOptions:
     """How well lengths are known before any reading: a parameter determined worse than this is called weak."""
     known_angle_rad: float = 0.01
     """The same for angles."""
+    poor_above_mm: float | None = None
+    """A minimum whose residuals are larger, root mean square, is poor. None: where the stated noise does not explain
+    them (chi² per degree of freedom up to 3) and they are more than a thousandth of the reach."""
 
 
 @dataclass

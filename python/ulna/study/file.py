@@ -166,4 +166,5 @@ def _fit(table: FitTable, units: Units) -> FitOptions:
         max_iterations=table.max_iterations,
         known_length_mm=mm(table.known_length, usual.known_length_mm),
         known_angle_rad=rad(table.known_angle, usual.known_angle_rad),
+        poor_above_mm=None if table.poor_above is None else table.poor_above * units.mm,
     )

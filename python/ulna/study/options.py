@@ -47,6 +47,9 @@ def with_options(study: AnyStudy, **overrides: Any) -> AnyStudy:
                 f"{study.label}: key 'fit.prior': {pattern!r} has the standard deviation {prior.u}; expected a "
                 "positive number."
             )
+    above = fit.poor_above_mm
+    if above is not None and not (math.isfinite(above) and above > 0.0):
+        raise UlnaInputError(f"{study.label}: key 'fit.poor_above_mm': {above}; expected a positive number of mm.")
     orders = fit.harmonics
     if not orders or sorted(set(orders)) != list(orders) or not 1 <= orders[0] <= orders[-1] <= 100:
         raise UlnaInputError(

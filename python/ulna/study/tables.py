@@ -80,6 +80,9 @@ class FitTable(FittedTable):
     """How well lengths are known before any reading (default 1 mm); worse-determined parameters are called weak."""
     known_angle: Positive | None = None
     """The same for angles (default 0.01 rad)."""
+    poor_above: Positive | None = None
+    """Residuals, root mean square, above which the fit did not converge but ended in a poor minimum (default: a
+    thousandth of the reach, unless the stated noise explains more)."""
 
 
 class StudyFile(Strict):

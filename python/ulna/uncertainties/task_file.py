@@ -20,7 +20,7 @@ from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 from ulna.study.data import Noise
 from ulna.study.file import noise_of_table
-from ulna.study.readings.checks import check_scale
+from ulna.study.readings.checks import check_scale, remark_limits
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.conditions import said_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
@@ -126,7 +126,8 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
     row = np.arange(1, len(frame) + 1)
     factors = angle_factors(source, arm, file.units)
     q_rad = angles(frame, "q", factors)
-    check_scale(q_rad, "q", factors, file.readings.angle or file.units.angle, header, row)
+    check_scale(q_rad, "q", arm, factors, file.readings.angle or file.units.angle, header, row)
+    remark_limits(q_rad, row, "q", arm, source_file, remarks)
     probe = np.unique(
         each_row(codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row), len(row))
     )

@@ -60,7 +60,7 @@ def play(
             "ball = … to the probe."
         )
     rng = np.random.default_rng([seed, 12])
-    travel = np.array([joint.limits_rad or (-np.pi, np.pi) for joint in truth.joints])
+    travel = np.array([joint.travel_rad or (-np.pi, np.pi) for joint in truth.joints])
     margin = 6.0 * encoder_rad
     mover = Mover(truth, travel + np.array([margin, -margin]))
     range_mm = round(2.0 * REACHED * truth.core.reach_mm(0), -1)

@@ -130,7 +130,7 @@ def read_touches(
     source = Source(setting.path, key, reading, 0, arm_file)
     factors = angle_factors(source, arm, setting.units)
     q_rad = angles(frame, "q", factors)
-    check_scale(q_rad, "q", factors, entry.angle or setting.units.angle, header, row)
+    check_scale(q_rad, "q", arm, factors, entry.angle or setting.units.angle, header, row)
     probe = each_row(codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row), len(row))
     said: dict[str, Any] = {"temperature_c": setting.temperature_c, **said_of(frame, arm.n, header, row)}
     conditions = arm.conditions(len(row), said["temperature_c"], said.get("approach"))

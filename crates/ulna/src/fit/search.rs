@@ -54,6 +54,8 @@ pub(crate) struct Plan {
     pub throw: Throw,
     pub most_starts: usize,
     pub seed: u64,
+    /// What the user calls poor: [`poor`].
+    pub poor_above_mm: Option<f64>,
 }
 
 /// Readings used for a start, and iterations after which a start is given up.
@@ -155,8 +157,9 @@ pub(crate) fn search_over(
             best = Searched { x, cost, signs: thin.arm().signs().collect(), ..best };
         }
         // the noise as stated, or rounding, explains it; or several starts found the same
-        let explained = thin.noise().is_some() && dof > 0.0 && best.cost < 3.0 * dof;
-        let enough = if poor(&thin, &start, best.cost) { AGREEING_POOR } else { AGREEING };
+        let explained = thin.noise().is_some() && dof > 0.0 && best.cost < EXPLAINED * dof;
+        let is_poor = poor(&thin, &start, best.cost, free.len(), plan.poor_above_mm);
+        let enough = if is_poor { AGREEING_POOR } else { AGREEING };
         let far_better = best.starts >= SEVERAL && best.cost < FAR_BETTER * runner_up;
         if explained || best.cost <= negligible || agreeing >= enough || far_better {
             break;
@@ -189,19 +192,30 @@ pub(crate) fn is_zero_offset(problem: &Problem, parameter: usize) -> bool {
     parameter < problem.arm().joint_parameter_count() && parameter.is_multiple_of(4)
 }
 
-/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves; nor are residuals a hundred times
-/// the stated noise.
+/// Chi² per degree of freedom up to which the stated noise explains what is left.
+const EXPLAINED: f64 = 3.0;
+/// Residuals beyond this part of the arm's reach are not what a calibrated arm leaves, where nothing is stated of them;
+/// nor are residuals a hundred times the stated noise.
 const POOR: f64 = 1e-3;
 const POOR_NOISE: f64 = 100.0;
 
-/// Whether a cost is beyond what any calibrated arm leaves. The reach is the shorter of that at the start and that at
-/// these parameters: either may be absurd.
-pub(crate) fn poor(problem: &Problem, parameters: &[f64], cost: f64) -> bool {
+/// Whether a cost is beyond what any calibrated arm leaves. What the user states decides: `above_mm`, the root mean
+/// square from which on a fit is poor, or else a noise that explains the cost. A part of the reach is a guess for those
+/// who stated neither, or whose noise explains nothing. The reach is the shorter of that at the start and that at these
+/// parameters: either may be absurd. unknowns: how many parameters were fitted, without those of placements.
+pub(crate) fn poor(problem: &Problem, parameters: &[f64], cost: f64, unknowns: usize, above_mm: Option<f64>) -> bool {
     let weights: f64 = problem.groups().iter().map(|g| g.weight_squared_sum()).sum();
-    let reach = problem.reach_at_mm(parameters).min(problem.reach_mm());
-    let dof = problem.equations().saturating_sub(problem.placement_unknowns()).max(1);
-    let beyond_noise = problem.noise().is_some() && cost > POOR_NOISE.powi(2) * dof as f64;
-    beyond_noise || (cost / weights).sqrt() > POOR * reach
+    let rms_mm = (cost / weights).sqrt();
+    if let Some(above_mm) = above_mm {
+        return rms_mm > above_mm;
+    }
+    let stated = problem.noise().is_some();
+    let equations = problem.equations().saturating_sub(problem.placement_unknowns());
+    if stated && cost <= EXPLAINED * equations.saturating_sub(unknowns) as f64 {
+        return false;
+    }
+    let reach_mm = problem.reach_at_mm(parameters).min(problem.reach_mm());
+    stated && cost > POOR_NOISE.powi(2) * equations.max(1) as f64 || rms_mm > POOR * reach_mm
 }
 
 /// Lets a fit be interrupted without reporting each of its steps.

@@ -42,6 +42,9 @@ pub struct Options {
     pub unknown_signs: u64,
     /// What is known before.
     pub known: Known,
+    /// Root mean square of the residuals from which on a minimum is poor, mm; `None`: the stated noise says, or a part of
+    /// the reach.
+    pub poor_above_mm: Option<f64>,
 }
 
 impl Default for Options {
@@ -53,6 +56,7 @@ impl Default for Options {
             search_starts: 2000,
             unknown_signs: 0,
             known: Known::default(),
+            poor_above_mm: None,
         }
     }
 }
@@ -131,7 +135,15 @@ pub fn solve_from(
     let geometry: Vec<usize> = free.iter().copied().filter(|&j| j < problem.arm().geometry_count()).collect();
     let (mut geometry_pins, gram) = pins(problem, &geometry, &start, monitor)?;
     let cost_start = gram.cost();
-    let plan = |throw| Plan { throw, most_starts: options.search_starts, seed: options.seed };
+    let plan = |throw| Plan {
+        throw,
+        most_starts: options.search_starts,
+        seed: options.seed,
+        poor_above_mm: options.poor_above_mm,
+    };
+    let is_poor = |problem: &Problem, parameters: &[f64], cost: f64| {
+        poor(problem, parameters, cost, free.len(), options.poor_above_mm)
+    };
     let given: Vec<f64> = geometry.iter().map(|&j| start[j]).collect();
     let (mut searched_starts, mut search_reason, mut undecided_signs) = (0, None, vec![]);
     let can_search = options.search_starts > 0 && geometry.iter().any(|&j| is_zero_offset(problem, j));
@@ -167,7 +179,7 @@ pub fn solve_from(
     };
     way.discount_outliers(&mut report)?;
     way.release(&mut report)?;
-    if search_reason.is_none() && can_search && poor(way.problem, &way.parameters(), report.cost) {
+    if search_reason.is_none() && can_search && is_poor(way.problem, &way.parameters(), report.cost) {
         let found = search(way.problem, &geometry, &geometry_pins, &given, plan(Throw::Widening), monitor)?;
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::PoorMinimum));
         let mut there = start.clone();
@@ -185,7 +197,7 @@ pub fn solve_from(
     let sizeless = way.pins.iter().any(|p| p.kind == Kind::Growth);
     let collapsed = sizeless && collapsed(way.problem, &way.parameters());
     let ended = report.termination.converged() || search_reason.is_some();
-    if collapsed || ended && !free.is_empty() && poor(way.problem, &way.parameters(), report.cost) {
+    if collapsed || ended && !free.is_empty() && is_poor(way.problem, &way.parameters(), report.cost) {
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;

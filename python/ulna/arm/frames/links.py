@@ -110,7 +110,7 @@ def hayati_where_parallel(
             if own.d_mm:
                 link = link_between(old[:3, 3], old[:3, 2], like=replace(own, model="hayati"))
                 own = replace(link, sign=own.sign, name=own.name, limits_rad=own.limits_rad)
-                own = replace(own, counts_per_turn=joint.counts_per_turn)
+                own = replace(own, endless=joint.endless, counts_per_turn=joint.counts_per_turn)
             own = replace(own, model="hayati")
         if own.model != joint.model:
             changed.append(k)

@@ -88,6 +88,8 @@ def where_to_look(result: Result) -> str:
     residuals = result.residuals
     if not len(residuals):
         return ""
+    if result.fit.termination == "poor-minimum":
+        hints.append(_if_that_is_its_noise(result.fit))
     worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
     hints.append(
         f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
@@ -102,6 +104,20 @@ def where_to_look(result: Result) -> str:
                 f"'{rows['placement'][0]}': is a column 'placement' missing?"
             )
     return " ".join(hints)
+
+
+def _if_that_is_its_noise(fit: FitSummary) -> str:
+    """What is called poor may be what the instrument leaves, and only its owner knows."""
+    left = f"{figure_mm(fit.rms_mm)} mm are left, rms"
+    if fit.chi2_per_dof is None:
+        return (
+            f"{left}, and no noise is stated to explain them. If the instrument is that coarse, say so: [noise] seat, "
+            "its standard deviation, or [fit] poor_above, what is too much."
+        )
+    return (
+        f"{left}: {fit.chi2_per_dof**0.5:.3g} times what the stated noise explains. If the readings are that much "
+        "coarser, state it in [noise]."
+    )
 
 
 def parameter_tables(parameters: Sequence[Parameter]) -> list[RenderableType]:

@@ -49,6 +49,7 @@ def arm_from_chain(chain: Chain) -> tuple[Arm, F64]:
             t = t @ link_at_zero(link)
         own = _mass(step.mass, inverse(t) @ frames[k])
         link = replace(link, sign=sign if k == 0 else 1, name=step.name, limits_rad=step.limits_rad, effects=own)
+        link = replace(link, endless=step.endless)
         joints.append(link)
     x, y, z = (without_rounding_mm(value) for value in (inverse(t) @ t_root_tip)[:3, 3].tolist())
     down = (-t_root_base[2, :3]).tolist() if any(joint.effects.mass_kg for joint in joints) else [0.0, 0.0, -1.0]

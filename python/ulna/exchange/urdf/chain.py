@@ -33,6 +33,8 @@ class Step:
     axis: F64 | None
     """(3,) unit vector in the joint's frame; None for a fixed joint."""
     limits_rad: tuple[float, float] | None = None
+    endless: bool = False
+    """Of type continuous."""
     mass: Mass = NO_MASS
     """Of what moves with it, up to the next rotary joint."""
     element: Element | None = field(default=None, compare=False, repr=False)
@@ -233,7 +235,7 @@ def _step(joint: Element, path: Path) -> Step:
             f"{path}: joint '{name}', axis: got '{_plain(axis)}', which has no direction; expected a unit vector such "
             "as '0 0 1'. Correct it."
         )
-    return Step(name, t, axis / length, _limits(joint, name, path), element=joint)
+    return Step(name, t, axis / length, _limits(joint, name, path), kind == "continuous", element=joint)
 
 
 def _limits(joint: Element, name: str, path: Path) -> tuple[float, float] | None:

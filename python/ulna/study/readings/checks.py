@@ -33,26 +33,38 @@ def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
 def check_scale(
     q_rad: F64,
     letter: str,
+    arm: Arm,
     factors: F64,
     unit: str,
     header: Header,
     row: I64,
     remedy: str = "State the unit with the key 'angle'.",
 ) -> None:
-    """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit; remedy: how
-    the unit is stated here. Raises UlnaInputError."""
-    for k, factor in enumerate(factors):
-        column = q_rad[:, k]
-        if max(column.max(), -column.min()) <= MOST_RAD:
-            continue
-        first = int(np.argmax(np.abs(column) > MOST_RAD))
-        asked = {"rad": "degrees or counts", "deg": "counts", "counts": "counts, and is counts_per_turn right"}[unit]
-        remedy = "Correct counts_per_turn or the column." if unit == "counts" else remedy
-        raise UlnaInputError(
-            f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got "
-            f"{column[first] / factor:g} {unit}, more than two turns; expected angles within ±4π rad (720°). Are "
-            f"these {asked}? {remedy}"
-        )
+    """Whether angles can be in the unit that is stated. (N, n) rad; factors (n,) rad per unit; remedy: how the unit is
+    stated here. Raises UlnaInputError.
+
+    An endless joint may stand anywhere, one with limits as far as they go, and every joint within two turns. Where only
+    one joint is beyond, and is one that goes all the way round, it has counted turns: no matter of units, for those are
+    the same for all joints, but remarked upon (`Outside`).
+    """
+    farthest_rad = np.abs(q_rad).max(axis=0)
+    beyond = [k for k, joint in enumerate(arm.joints) if farthest_rad[k] > joint.most_rad]
+    if not beyond or (len(beyond) == 1 and arm.joints[beyond[0]].goes_round):
+        return
+    k = beyond[0]
+    joint, column = arm.joints[k], q_rad[:, k]
+    first = int(np.argmax(np.abs(column) > joint.most_rad))
+    expected = "angles within ±4π rad (720°) of a joint without limits"
+    if joint.limits_rad is not None:
+        low, high = joint.limits_rad
+        expected = f"angles within the limits of joint {k + 1}, {low:g} to {high:g} rad, or ±4π rad (720°)"
+    asked = {"rad": "degrees or counts", "deg": "counts", "counts": "counts, and is counts_per_turn right"}[unit]
+    remedy = "Correct counts_per_turn or the column." if unit == "counts" else remedy
+    raise UlnaInputError(
+        f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got {column[first] / factors[k]:g} {unit}, "
+        f"more than two turns; expected {expected}. Are these {asked}? {remedy} If joint {k + 1} does turn that far, "
+        "say so in the arm file: endless = true, or limits."
+    )
 
 
 def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:
@@ -126,6 +138,8 @@ class Outside:
                 f"{path}: column '{self._letter}{k + 1}': {counted(self._count[k], 'reading')} outside the "
                 f"limits of joint {k + 1} ({low:g} to {high:g} rad): {rows_named(np.array(self._first[k]))}; the "
                 f"farthest is {value:.6g} rad in row {at}. Check the limits in the arm file, or the readings."
+                + " A joint that turns on and on has endless = true in place of limits."
+                * (abs(value) > MOST_RAD)
             )
         return said
 

@@ -127,11 +127,11 @@ def _part(
         artefact, feature = own_points(frame, row, artefact, header, source, units, remarks)
     factors = angle_factors(source, arm, units)
     q_rad = angles(frame, "q", factors)
-    check_scale(q_rad, "q", factors, source.entry.angle or units.angle, header, row)
+    check_scale(q_rad, "q", arm, factors, source.entry.angle or units.angle, header, row)
     p_rad = length_mm = None
     if pairs:
         p_rad = angles(frame, "p", factors)
-        check_scale(p_rad, "p", factors, source.entry.angle or units.angle, header, row)
+        check_scale(p_rad, "p", arm, factors, source.entry.angle or units.angle, header, row)
     if kind.measured_column is not None:
         length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
     said: dict[str, Any] = {**said_of(frame, arm.n, header, row)}
