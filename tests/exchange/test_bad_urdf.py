@@ -155,12 +155,13 @@ def test_limits(tmp_path: Path, old: str, new: str, limits: tuple[float, float] 
 def _branch(name: str, parent: str, kind: str, more: str = "") -> str:
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{name}_link"/>'
-        f'<origin xyz="0.01 0 0"/><axis xyz="0 0 1"/>{more}</joint>'
+        f'<origin xyz="0.01 0 0"/><axis xyz="0 0 1"/>{more}</joint><link name="{name}_link"/>'
     )
 
 
 def test_a_base_in_the_middle(tmp_path: Path) -> None:
-    lift = _branch("lift", "world", "prismatic").replace("lift_link", "base")
+    lift = _branch("lift", "world", "prismatic").replace('<link name="lift_link"/>', '<link name="world"/>')
+    lift = lift.replace("lift_link", "base")
     beside = (
         _branch("b1", "world", "revolute") + _branch("b2", "b1_link", "revolute") + _branch("b3", "b2_link", "fixed")
     )

@@ -163,6 +163,7 @@ def test_a_zero_offset_turns_its_own_joint_only(tmp_path: Path) -> None:
 ODD = """<?xml version='1.0' encoding='ISO-8859-1'?>\r
 <!-- a > in a comment, <origin xyz="9 9 9"/>, and an umlaut: \u00fc -->\r
 <robot name="odd"><gazebo reference="l1"><origin xyz="8 8 8"/></gazebo>\r
+<link name="base"/><link name="l1"/><link name="f1"/><link name="l2"/><link name="tool"/>
 \t<joint type="revolute" name='j>1'><!-- no origin, no axis: zero, and x -->
     <parent link="base"/><child link="l1"/><limit effort="1" velocity="2" lower="-1" upper="1"/></joint>
   <joint name="f" type="fixed"><parent link="l1"/><child link="f1"/><origin rpy="0 -1.5707963267948966 0"/></joint>
@@ -223,7 +224,8 @@ def test_other_links_stay_where_they_were_on_their_bodies(tmp_path: Path) -> Non
     made = [Made((0.0, 0.0, 0.3), (0.0, 0.0, 0.2), (0.0, 0.0, 1.0))]
     made += [Made((0.2, 0.0, 0.1), (0.1 * k, 1.0, 0.0), (0.0, 1.0, 0.0)) for k in range(4)]
     camera = (
-        '<joint name="c" type="fixed"><parent link="l2"/><child link="camera"/><origin xyz="0 0.1 0"/></joint></robot>'
+        '<joint name="c" type="fixed"><parent link="l2"/><child link="camera"/><origin xyz="0 0.1 0"/></joint>'
+        '<link name="camera"/></robot>'
     )
     path = write(tmp_path, urdf(made).replace("</robot>", camera))
     arm, _ = arm_from_chain(read_chain(path, "tip"))

@@ -85,17 +85,21 @@ def dh(
     ] = "dh",
     length_unit: Annotated[str, typer.Option("--length-unit", help="mm, m or in.")] = "mm",
     angle_unit: Annotated[str, typer.Option("--angle-unit", help="rad or deg.")] = "rad",
+    hayati: Annotated[
+        bool, typer.Option("--hayati", help="A column beta for Hayati joints, in place of large offsets d.")
+    ] = False,
     force: Force = False,
 ) -> None:
     """Write an arm as a table of Denavit–Hartenberg parameters: a row for each joint, then one for each probe's tip.
 
     turn = sign * encoder - theta0; an offset, as many controllers call it, is -theta0. The tips' rows are frames that
-    no encoder turns. Units stand in the names of the columns.
+    no encoder turns. Units stand in the names of the columns. Hayati joints become DH joints where the axes have a
+    common normal, so that controllers take them.
 
     Example: [bold]ulna export dh out/result.json -o table.csv --convention modified-dh --angle-unit deg[/bold]
     """
     from ulna.cli import output
-    from ulna.exchange.export.dh import dh_table
+    from ulna.exchange.export.dh import dh_table, without_beta
     from ulna.exchange.export.source import read_source
     from ulna.formats.output import refuse_inputs, write_file
 
@@ -105,9 +109,11 @@ def dh(
     refuse_inputs([out], [arm])
     source = read_source(arm, "a table")
     choices: Any = {"convention": convention, "length": length_unit, "angle": angle_unit}
-    write_file(out, dh_table(source.arm, path=arm, **choices), force)
+    written, said = (source.arm, []) if hayati else without_beta(source.arm)
+    source.remarks.extend(f"{out}: {remark}" for remark in said)
+    write_file(out, dh_table(written, path=arm, **choices), force)
     output.say(f"{out}: '{source.arm.name}', {source.arm.n} joints, {_listed(source.arm.probes)}.")
-    for name, probe in source.arm.probes.items():
+    for name, probe in written.probes.items():
         x, y, z = (f"{value:.4f}" for value in probe.tip_mm)
         where = f"x = {x}, y = {y}, z = {z} mm in the frame that turns with joint {source.arm.n}"
         output.say(f"Probe '{name}' is at {where}: a controller's tool.")

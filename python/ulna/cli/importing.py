@@ -94,6 +94,12 @@ def urdf(
     base_link: Annotated[
         str | None, typer.Option(help="The link that the arm stands on; default: the root of the drawing.")
     ] = None,
+    length_unit: Annotated[
+        str | None, typer.Option("--length-unit", help="mm, m or in, where the drawing is not in m.")
+    ] = None,
+    angle_unit: Annotated[
+        str | None, typer.Option("--angle-unit", help="rad or deg: of the joints' limits, where they are not in rad.")
+    ] = None,
     force: Force = False,
 ) -> None:
     """A robot's drawing as an arm file, to be named in a study of your own readings.
@@ -102,9 +108,12 @@ def urdf(
     """
     from ulna.exchange.importers.urdf import import_urdf
 
-    found = import_urdf(file, out, tip_link, base_link, force)
+    _check_units(length_unit, angle_unit)
+    found = import_urdf(file, out, tip_link, base_link, force, length_unit, angle_unit)
     _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe 'ball' at link '{found.chain.tip_link}'.")
     _say(found.remark)
+    for remark in found.chain.remarks:
+        _say(remark)
 
 
 @app.command("dh")
@@ -139,18 +148,22 @@ def dh(
     from ulna.exchange.importers.dh import import_dh
 
     one_of("--convention", convention, ("dh", "modified-dh"))
-    for option, unit, known in (
-        ("--length-unit", length_unit, ("mm", "m", "in")),
-        ("--angle-unit", angle_unit, ("rad", "deg")),
-    ):
-        if unit is not None:
-            one_of(option, unit, known)
+    _check_units(length_unit, angle_unit)
     chosen: Any = convention
     found = import_dh(file, out, chosen, length_unit, angle_unit, tip, force)
     probes = ", ".join(f"'{name}'" for name in found.arm.probes)
     _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe{'s' * (len(found.arm.probes) > 1)} {probes}.")
     for remark in found.remarks:
         _say(remark)
+
+
+def _check_units(length_unit: str | None, angle_unit: str | None) -> None:
+    for option, unit, known in (
+        ("--length-unit", length_unit, ("mm", "m", "in")),
+        ("--angle-unit", angle_unit, ("rad", "deg")),
+    ):
+        if unit is not None:
+            one_of(option, unit, known)
 
 
 def _say(line: str) -> None:

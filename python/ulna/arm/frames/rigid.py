@@ -60,6 +60,24 @@ def to_rpy(r: F64, near: F64 | None = None) -> F64:
     return min(found, key=lambda angles: float(np.abs(angles - near).sum()))
 
 
+def from_quaternion(quaternion: F64) -> F64:
+    """(3, 3) of a unit quaternion x, y, z, w: v + 2 w (u × v) + 2 u × (u × v) with u = (x, y, z)."""
+    x, y, z, w = quaternion
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    r: F64 = np.eye(3) + 2.0 * w * cross + 2.0 * cross @ cross
+    return r
+
+
+def to_quaternion(r: F64) -> F64:
+    """(4,) unit quaternion x, y, z, w ≥ 0: the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
+    k = np.zeros((4, 4))
+    k[:3, :3] = r + r.T - np.trace(r) * np.eye(3)
+    k[3, 3] = np.trace(r)
+    k[:3, 3] = k[3, :3] = r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]
+    quaternion: F64 = np.linalg.eigh(k / 3.0)[1][:, -1]
+    return -quaternion if quaternion[3] < 0.0 else quaternion
+
+
 def apart(one_rad: float, other_rad: float) -> float:
     """How far two angles are from each other, whole turns aside: 0 … π."""
     return abs(math.remainder(one_rad - other_rad, 2 * math.pi))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.frames.links import moved
 from ulna.arm.frames.modified import Convention, to_modified
+from ulna.arm.frames.pure import LARGE_MM, pure_dh
 from ulna.arm.frames.rigid import pose, turn
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
@@ -24,6 +26,26 @@ from ulna.ground.errors import UlnaInputError
 
 #: what stands in the column `joint` of a row that is no joint
 TIP = "tip"
+
+
+def without_beta(arm: Arm) -> tuple[Arm, list[str]]:
+    """The same arm with DH joints in place of Hayati joints, where axes have a common normal; and what to say of it."""
+    joints, probes, kept = pure_dh(arm.joints, arm.probes, arm.full_last_link)
+    said = []
+    changed = [k for k, joint in enumerate(arm.joints, start=1) if joint.beta_rad and k not in kept]
+    far_mm = max((abs(joint.d_mm) for joint in joints), default=0.0)
+    if changed and far_mm > LARGE_MM:
+        said.append(
+            f"the axes of joints {', '.join(map(str, changed))} are nearly parallel to the next, so that offsets d are "
+            f"as large as {far_mm / 1000.0:.3g} m and cancel: give the controller all digits. With --hayati the table "
+            "has a column beta instead."
+        )
+    if kept:
+        said.append(
+            f"joints {', '.join(map(str, kept))} keep a column beta: their axes are too nearly parallel to the next "
+            "for an offset d. A controller without beta cannot take it; hold beta at 0 in the calibration."
+        )
+    return replace(arm, joints=joints, probes=probes, uncertainty=None), said
 
 
 def dh_table(arm: Arm, convention: Convention, path: Path, length: LengthUnit = "mm", angle: AngleUnit = "rad") -> str:
@@ -36,8 +58,8 @@ def dh_table(arm: Arm, convention: Convention, path: Path, length: LengthUnit = 
     if tilted and convention == "modified-dh":
         raise UlnaInputError(
             f"{path}: key 'joint.{tilted[0]}.beta': got {arm.joints[tilted[0] - 1].beta_rad:g} rad, which a modified "
-            "table has no column for; expected joints without beta. Export with --convention dh, or calibrate with "
-            f'hold = ["joint.*.beta"] from an arm in which it is 0.'
+            "table has no column for; expected joints without beta. Export without --hayati or with --convention dh, "
+            f'or calibrate with hold = ["joint.*.beta"] from an arm in which it is 0.'
         )
     joints, probes, tip_row = list(arm.joints), arm.probes, _tip
     if convention == "modified-dh":

@@ -14,13 +14,14 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.frames.rigid import from_rpy, inverse, pose, to_rpy
+from ulna.arm.frames.rigid import from_rpy, inverse, pose, to_quaternion, to_rpy
 from ulna.exchange.export.link_frames import calibrated_frames
 from ulna.exchange.export.urdf import number, numbers
 from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import Chain, Step, chain_of
 from ulna.exchange.urdf.document import Document, read_document, start_tag
 from ulna.exchange.urdf.numbers import vector
+from ulna.exchange.urdf.units import in_units
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
@@ -98,7 +99,8 @@ def fill_template(
     Fed with the same encoder angles, the tip link stands at `t_root_base · arm.tip`, with `t_root_base` of
     `arm_from_chain`. Raises UlnaInputError where the arm does not fit.
     """
-    chain = chain_of(document, tip_link, base_link)
+    # what is put into the file is in m
+    chain = in_units(chain_of(document, tip_link, base_link), angle_unit="rad")
     drawn, t_root_base = arm_from_chain(chain)
     if drawn.n != arm.n:
         raise UlnaInputError(
@@ -149,11 +151,14 @@ def _edits(document: Document, step: Step, new: F64, chain: Chain) -> list[tuple
     old_xyz_m = vector(origin, "xyz", "0 0 0", f"joint '{step.name}'", chain.path)
     old_rpy = vector(origin, "rpy", "0 0 0", f"joint '{step.name}'", chain.path)
     values: dict[str, str] = {}
+    by_quaternion = origin is not None and origin.get("quat_xyzw") is not None
+    if by_quaternion and np.abs(step.t_parent_joint[:3, :3] - new[:3, :3]).max() >= UNCHANGED:
+        values["quat_xyzw"] = numbers(to_quaternion(new[:3, :3]))
     for key, old, is_new in (
         ("xyz", old_xyz_m, new[:3, 3] / 1000.0),
         ("rpy", old_rpy, to_rpy(new[:3, :3], near=old_rpy)),
     ):
-        if key == "rpy" and np.abs(from_rpy(*old_rpy) - new[:3, :3]).max() < UNCHANGED:
+        if key == "rpy" and (by_quaternion or np.abs(from_rpy(*old_rpy) - new[:3, :3]).max() < UNCHANGED):
             continue
         changed = np.abs(is_new - old) >= UNCHANGED
         if changed.any():

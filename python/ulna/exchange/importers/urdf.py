@@ -12,6 +12,7 @@ from ulna.arm.file import arm_toml
 from ulna.arm.frames.rigid import to_rpy
 from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import Chain, read_chain
+from ulna.exchange.urdf.units import in_units
 from ulna.formats.output import refuse_inputs, write_file
 from ulna.ground.arrays import F64
 
@@ -32,11 +33,20 @@ class Imported:
 
 
 def import_urdf(
-    path: Path, out: Path, tip_link: str | None = None, base_link: str | None = None, force: bool = False
+    path: Path,
+    out: Path,
+    tip_link: str | None = None,
+    base_link: str | None = None,
+    force: bool = False,
+    length_unit: str | None = None,
+    angle_unit: str | None = None,
 ) -> Imported:
-    """Write the arm file. Raises UlnaInputError; nothing is written then."""
+    """Write the arm file. length_unit, angle_unit: of lengths and limits, for drawings that are not in m and rad.
+
+    Raises UlnaInputError; nothing is written then.
+    """
     refuse_inputs([out], [path])
-    chain = read_chain(path, tip_link, base_link)
+    chain = in_units(read_chain(path, tip_link, base_link), length_unit, angle_unit)
     arm, t_root_base = arm_from_chain(chain)
     found = Imported(arm, chain, t_root_base)
     lines = [f"Made of {path.name}, from link '{chain.base_link}' to link '{chain.tip_link}'.", found.remark]

@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from ulna.exchange.urdf.document import WHAT, Document, read_document
+from ulna.exchange.urdf.known import check_joint, check_tree
 from ulna.exchange.urdf.masses import NO_MASS, Mass, mass_behind, origin_of
 from ulna.exchange.urdf.numbers import MOST, number, vector
 from ulna.ground.arrays import F64
@@ -51,6 +52,8 @@ class Chain:
     path: Path
     base_link: str = "base_link"
     tip_link: str = USUAL_TIP
+    remarks: tuple[str, ...] = ()
+    """What was not read, and what else might have been meant."""
 
     @property
     def turning(self) -> list[Step]:
@@ -72,12 +75,14 @@ def chain_of(document: Document, tip_link: str | None = None, base_link: str | N
     """The same of a document that is read already."""
     above = _above(document)
     ends = _ends(above, document.path)
+    remarks = check_tree(document)
     if base_link is not None:
         above, ends = _from(base_link, above, document.path)
     if not ends:
         raise UlnaInputError(f"{document.path}: there are no joints; expected {WHAT} with at least two rotary joints.")
     if tip_link is None:
         tip_link = _outermost(ends, document.path)
+        remarks += _others(tip_link, ends, above, document.path)
     if tip_link not in ends:
         raise UlnaInputError(
             f"{document.path}: there is no link '{tip_link}' below a joint; expected the name of one."
@@ -88,8 +93,12 @@ def chain_of(document: Document, tip_link: str | None = None, base_link: str | N
     while link in above:
         link, joint = above[link]
         way.insert(0, joint)
-    steps = _with_masses([_step(joint, document.path) for joint in way], document)
-    return Chain(document.robot.get("name") or document.path.stem, steps, document.path, link, tip_link)
+    found = []
+    for joint in way:
+        found.append(_step(joint, document.path))
+        remarks += check_joint(joint, document.path)
+    name = document.robot.get("name") or document.path.stem
+    return Chain(name, _with_masses(found, document), document.path, link, tip_link, tuple(remarks))
 
 
 def _with_masses(steps: list[Step], document: Document) -> tuple[Step, ...]:
@@ -197,6 +206,12 @@ def _listed(names: Iterable[str | None]) -> str:
 
 def _outermost(ends: dict[str, _End], path: Path) -> str:
     pool = {link: end for link, end in ends.items() if end.usable and end.turning >= 2} or ends
+    roots = dict.fromkeys(end.root for end in pool.values() if end.turning >= 2)
+    if len(roots) > 1:
+        raise UlnaInputError(
+            f"{path}: several links are roots of chains of rotary joints, {_listed(roots)}; expected one. Say which "
+            "the arm stands on with --base-link."
+        )
     most = max(end.turning for end in pool.values())
     pool = {link: end for link, end in pool.items() if end.turning == most}
     if most >= 2 and len({end.last for end in pool.values()}) > 1:
@@ -207,6 +222,25 @@ def _outermost(ends: dict[str, _End], path: Path) -> str:
             "is longest. Say which link is the tip with --tip-link."
         )
     return USUAL_TIP if USUAL_TIP in pool else max(pool, key=lambda link: pool[link].joints)
+
+
+def _others(tip_link: str, ends: dict[str, _End], above: dict[str, tuple[str, Element]], path: Path) -> list[str]:
+    """What else might have been meant, where nobody said: ends of other chains, other ends of this one."""
+    if tip_link == USUAL_TIP:
+        return []
+    way = [tip_link]
+    while way[-1] in above:
+        way.append(above[way[-1]][0])
+    parents = {parent for parent, _ in above.values()}
+    leaves = [link for link in ends if link not in parents and link not in way and ends[link].usable]
+    same = [link for link in leaves if ends[link].last == ends[tip_link].last]
+    on_way = {ends[link].last for link in way if link in ends}
+    other = [link for link in leaves if ends[link].turning >= 2 and ends[link].last not in on_way]
+    return [
+        f"{path}: the tip is link '{tip_link}'; {what} {_listed(links)}. Say which is meant with --tip-link."
+        for what, links in (("the last joint also carries", same), ("other chains end at", other))
+        if links
+    ]
 
 
 def _step(joint: Element, path: Path) -> Step:

@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from ulna.arm.frames.rigid import from_rpy, pose
-from ulna.exchange.urdf.numbers import number, vector
+from ulna.arm.frames.rigid import pose
+from ulna.exchange.urdf.numbers import number, rotation_of, vector
 from ulna.ground.arrays import F64
 
 
@@ -30,7 +30,7 @@ def origin_of(element: Element, what: str, path: Path) -> F64:
     """(4, 4) of its `<origin>`, mm; the identity where there is none. Raises UlnaInputError."""
     origin = element.find("origin")
     xyz_m = vector(origin, "xyz", "0 0 0", what, path)
-    return pose(from_rpy(*vector(origin, "rpy", "0 0 0", what, path)), 1000.0 * xyz_m)
+    return pose(rotation_of(origin, what, path), 1000.0 * xyz_m)
 
 
 def mass_behind(
