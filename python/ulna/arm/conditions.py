@@ -6,6 +6,7 @@ People say how warm it was in °C and from which side joints came by their signs
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, TypedDict
 
@@ -57,6 +58,10 @@ class Condition(ABC):
     """Whether one number may stand for all joints: a column `name`."""
     allowed: ClassVar[tuple[float, ...] | None] = None
     """Its values; None: any."""
+    within: ClassVar[tuple[float, float]] = (-math.inf, math.inf)
+    """Least and most that it can be, in its unit."""
+    remedy: ClassVar[str] = "Correct it."
+    """What is said where it cannot be so."""
     option: ClassVar[str | None] = None
     """By which a command is told one number for all readings."""
     missing: ClassVar[str]
@@ -85,6 +90,12 @@ class Condition(ABC):
     def of_touches(self, drawn: F64, touches: int) -> F64:
         """(places × touches, …) of what was drawn."""
 
+    def strange(self, values: F64) -> Bool:
+        """Which values cannot be in the unit that they should be in."""
+        low, high = self.within
+        found: Bool = (values < low) | (values > high)
+        return found if self.allowed is None else found | ~np.isin(values, self.allowed)
+
     def known(self, given: Any) -> bool:
         """Whether it is given of every pose."""
         return given is not None and bool(np.isfinite(given).all())
@@ -96,9 +107,11 @@ class Temperature(Condition):
     name, said, core = "temperature", "temperature_c", "warmth_k"
     fields: ClassVar = {"temperature": "temperature_c"}
     common, option = True, "--temperature"
+    within = (-100.0, 200.0)  # encoders stand no more
+    remedy = "Is it in kelvin? Write it in °C."
     missing = "the temperature is not given for every pose"
     unsaid = "do not all say how warm it was"
-    expected = "°C"
+    expected = "°C, from -100 to 200"
     give = "the column temperature, or temperature_c"
     columns = "a column temperature, °C, or one for each joint"
 

@@ -223,6 +223,13 @@ class ArmData:
                     f"arm '{self.name}': its {effect.whose} {effect.does}, but {condition.missing}; expected "
                     f"{condition.expected}. Give it ({condition.give})."
                 )
+            values = np.asarray(given, dtype=np.float64)
+            if condition.strange(values).any():
+                worst = values[condition.strange(values)].flat[0]
+                raise UlnaInputError(
+                    f"arm '{self.name}': {condition.name}: got {worst:g}; expected {condition.expected}. "
+                    f"{condition.remedy}"
+                )
             found[condition.core] = condition.for_core(given, count, self.n)  # type: ignore[literal-required]
         return found
 

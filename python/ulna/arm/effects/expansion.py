@@ -17,6 +17,10 @@ from ulna.arm.conditions import TEMPERATURE
 from ulna.arm.effects.effect import Effect, Row
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
+from ulna.ground.errors import UlnaInputError
+
+#: no material grows by a hundredth for each kelvin
+MOST_PER_K = 0.01
 
 
 class ExpansionKeys(Strict):
@@ -52,7 +56,12 @@ class Expansion(Effect):
         return {"expansion_per_k": None}
 
     def read(self, table: ExpansionKeys, key: str, units: Units, path: Path) -> dict[str, Any]:
-        """1/K whatever the file's units."""
+        """1/K whatever the file's units. Raises UlnaInputError for what must be in ppm/K."""
+        if table.expansion is not None and abs(table.expansion) > MOST_PER_K:
+            raise UlnaInputError(
+                f"{path}: key '{key}.expansion': got {table.expansion:g} 1/K; expected a number such as 11.5e-6. Is it in "
+                "ppm/K? Multiply it by 1e-6."
+            )
         return {"expansion_per_k": table.expansion}
 
     def written(self, own: ExpansionOfJoint) -> dict[str, Any]:

@@ -63,12 +63,12 @@ def said_of(frame: pl.DataFrame, joints: int, header: Header, row: I64) -> dict[
 
 def check_values(values: F64, columns: Sequence[str], condition: Condition, header: Header, row: I64) -> None:
     """(N, columns) of a condition that allows some values only. Raises UlnaInputError for the first other one."""
-    strange = np.zeros(values.shape, bool) if condition.allowed is None else ~np.isin(values, condition.allowed)
+    strange = condition.strange(values)
     if strange.any():
         k, column = (int(at[0]) for at in np.nonzero(strange))
         raise UlnaInputError(
             f"{header.path}: {header.at(int(row[k]), columns[column])}: got {values[k, column]:g}; expected "
-            f"{condition.expected}. Correct it."
+            f"{condition.expected}. {condition.remedy}"
         )
 
 
