@@ -59,8 +59,8 @@ class Expansion(Effect):
         """1/K whatever the file's units. Raises UlnaInputError for what must be in ppm/K."""
         if table.expansion is not None and abs(table.expansion) > MOST_PER_K:
             raise UlnaInputError(
-                f"{path}: key '{key}.expansion': got {table.expansion:g} 1/K; expected a number such as 11.5e-6. Is it in "
-                "ppm/K? Multiply it by 1e-6."
+                f"{path}: key '{key}.expansion': got {table.expansion:g} 1/K; expected a number such as 11.5e-6. Is it "
+                "in ppm/K? Multiply it by 1e-6."
             )
         return {"expansion_per_k": table.expansion}
 
