@@ -26,7 +26,7 @@ from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.cli import output
-from ulna.cli.printed.calibration import calibration_report, equations, where_to_look
+from ulna.cli.printed.calibration import calibration_report, equations
 from ulna.cli.printed.cross_validation import cross_validation_report
 from ulna.cli.printed.figures import per_placement
 from ulna.cli.printed.identification import determined_in_words
@@ -271,25 +271,3 @@ def test_one_is_singular_and_eleven_are_not(lost: int, words: str) -> None:
 @pytest.mark.parametrize(("degrees", "words"), [(1, " 1 degree of freedom"), (11, " 11 degrees of freedom")])
 def test_degrees_of_freedom_are_counted(degrees: int, words: str) -> None:
     assert words in equations(dataclasses.replace(result().fit, degrees_of_freedom=degrees))
-
-
-def test_after_a_bad_end_the_worst_row_and_a_missing_placement_are_named() -> None:
-    rows = {
-        "row": [1, 2, 3, 4],
-        "file": ["bars.csv"] * 4,
-        "artefact": ["bar"] * 4,
-        "placement": ["1"] * 4,
-        "feature": ["A", "B", "A", "B"],
-        "length_mm": pl.Series([None] * 4, dtype=pl.Float64),
-        "norm_mm": [1.0, 64.0, 3.0, 2.0],
-    }
-    text = where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(rows)))
-    assert "row 2 of bars.csv (artefact 'bar', placement '1')" in text
-    assert "All 4 readings of artefact 'bar' were taken as one standing" in text
-    text = where_to_look(
-        dataclasses.replace(result(), residuals=pl.DataFrame(rows | {"placement": ["1", "1", "2", "2"]}))
-    )
-    assert "one standing" not in text
-    lengths = rows | {"feature": pl.Series([None] * 4, dtype=pl.String), "length_mm": rows["norm_mm"]}
-    assert "one standing" not in where_to_look(dataclasses.replace(result(), residuals=pl.DataFrame(lengths)))
-    assert where_to_look(result()) == ""

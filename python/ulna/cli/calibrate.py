@@ -24,7 +24,8 @@ def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False,
     from ulna.calibration.calibrate import calibrate as run_calibration
     from ulna.calibration.result import FILES
     from ulna.cli import output
-    from ulna.cli.printed.calibration import calibration_report, where_to_look
+    from ulna.cli.printed.calibration import calibration_report
+    from ulna.cli.printed.hints import where_to_look
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.study.study import Study
 

@@ -82,44 +82,6 @@ def equations(fit: FitSummary) -> str:
     )
 
 
-def where_to_look(result: Result) -> str:
-    """After a fit that ended badly: the reading that fits worst, and readings that were all taken as one standing."""
-    hints = []
-    residuals = result.residuals
-    if not len(residuals):
-        return ""
-    if result.fit.termination == "poor-minimum":
-        hints.append(_if_that_is_its_noise(result.fit))
-    worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
-    hints.append(
-        f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
-        f"(artefact '{worst['artefact']}', placement '{worst['placement']}'); residuals.csv has them all."
-    )
-    # of length rows it does not matter which standing they are of
-    touches = residuals.filter(residuals["length_mm"].is_null())
-    for (artefact,), rows in touches.group_by("artefact", maintain_order=True):
-        if rows["placement"].n_unique() == 1 and len(rows) > 2:
-            hints.append(
-                f"All {len(rows)} readings of artefact '{artefact}' were taken as one standing, "
-                f"'{rows['placement'][0]}': is a column 'placement' missing?"
-            )
-    return " ".join(hints)
-
-
-def _if_that_is_its_noise(fit: FitSummary) -> str:
-    """What is called poor may be what the instrument leaves, and only its owner knows."""
-    left = f"{figure_mm(fit.rms_mm)} mm are left, rms"
-    if fit.chi2_per_dof is None:
-        return (
-            f"{left}, and no noise is stated to explain them. If the instrument is that coarse, say so: [noise] seat, "
-            "its standard deviation, or [fit] poor_above, what is too much."
-        )
-    return (
-        f"{left}: {fit.chi2_per_dof**0.5:.3g} times what the stated noise explains. If the readings are that much "
-        "coarser, state it in [noise]."
-    )
-
-
 def parameter_tables(parameters: Sequence[Parameter]) -> list[RenderableType]:
     """Every parameter: start, value, standard uncertainty, that of its prior where there are any, unit, status.
 
