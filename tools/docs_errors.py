@@ -144,7 +144,8 @@ BROUGHT_IN: dict[str, tuple[list[str], str, str]] = {
     "a joint that slides": (
         ["import", "urdf", "robot.urdf", "-o", "arm.toml"],
         "robot.urdf",
-        '<robot name="r"><joint name="lift" type="prismatic"><parent link="hall"/><child link="base"/></joint></robot>',
+        '<robot name="r"><link name="hall"/><link name="base"/>'
+        '<joint name="lift" type="prismatic"><parent link="hall"/><child link="base"/></joint></robot>',
     ),
     "a table without units": (
         ["import", "dh", "maker.csv", "-o", "arm.toml", "--convention", "modified-dh"],

@@ -33,12 +33,12 @@ class Joint:
     """What people call it; only for messages."""
     limits_rad: tuple[float, float] | None = None
     """Lowest and highest encoder angle; readings outside are warned about."""
-    endless: bool = False
-    """It turns on and on, and its encoder counts the turns; such a joint has no limits."""
     counts_per_turn: float | None = None
     """Encoder counts in one full turn; needed for readings in counts."""
     effects: Effects = NONE
     """What the joint does beyond its geometry."""
+    endless: bool = False
+    """It turns on and on, and its encoder counts the turns; such a joint has no limits."""
 
     @property
     def travel_rad(self) -> tuple[float, float] | None:
