@@ -134,8 +134,9 @@ def test_an_uncertain_bar_makes_uncertain_lengths():
 
     def fitted(u_mm):
         problem = _core.Problem(core_arm(truth), STATED.encoder_rad, STATED.seat_mm)
-        probe = np.zeros(len(group.q_rad), np.int64)
-        problem.add_lengths("bar", group.q_rad, group.p_rad, probe, group.length_mm, u_mm)
+        rows = {"q_rad": group.q_rad, "p_rad": group.p_rad, "probe": np.zeros(len(group.q_rad), np.int64)}
+        length = [("length", group.length_mm[0], u_mm, False)]
+        problem.add("length", "bar", measured_mm=group.length_mm, dimensions=length, **rows)
         return _core.fit(problem, nothing_held(truth))
 
     exact, uncertain = fitted(0.0), fitted(0.05)

@@ -112,11 +112,12 @@ def test_a_prior_of_an_artefact_stands_for_its_certificate():
     """The bar's length fitted within its uncertainty, or given a prior by hand: the same."""
     truth, rng = table_4(), np.random.default_rng(5)
     bar = virtual.bars(truth, rng, 40, 443.172, TOUCHES)
-    rows = (bar.q_rad[0::2], bar.q_rad[1::2], np.zeros(40, np.int64), np.full(40, 443.172))
+    rows = {"q_rad": bar.q_rad[0::2].copy(), "p_rad": bar.q_rad[1::2].copy(), "probe": np.zeros(40, np.int64)}
     found = []
     for u_mm in (0.005, 0.1):
         problem = _core.Problem(core_arm(truth), STATED.encoder_rad, STATED.seat_mm)
-        problem.add_lengths("bar", *rows, u_mm, True)
+        length = [("length", 443.172, u_mm, True)]
+        problem.add("length", "bar", measured_mm=np.full(40, 443.172), dimensions=length, **rows)
         assert problem.parameter_names[-1] == "artefact.bar.length"
         if u_mm == 0.1:
             problem.add_prior(27, 443.172, 0.005)

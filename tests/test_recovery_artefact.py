@@ -24,7 +24,12 @@ def _truth() -> _core.Arm:
 def _lengths(problem: _core.Problem, truth: _core.Arm, rng: np.random.Generator) -> None:
     q_rad, p_rad = rng.uniform(-2.5, 2.5, (2, 101, 7))
     length_mm = np.linalg.norm(truth.tip(q_rad) - truth.tip(p_rad), axis=1)
-    problem.add_lengths("bar", q_rad, p_rad, np.zeros(101, dtype=np.int64), length_mm, 0.02)
+    _add_lengths(problem, q_rad, p_rad, length_mm, 0.02)
+
+
+def _add_lengths(problem: _core.Problem, q_rad, p_rad, length_mm, u_mm: float) -> None:
+    rows = {"q_rad": q_rad, "p_rad": p_rad, "probe": np.zeros(len(q_rad), dtype=np.int64), "measured_mm": length_mm}
+    problem.add("length", "bar", dimensions=[("length", length_mm[0], u_mm, False)], **rows)
 
 
 def _points(features_mm: list[list[float]]):
@@ -33,8 +38,17 @@ def _points(features_mm: list[list[float]]):
         q_rad = rng.uniform(-2.5, 2.5, (count, 7))
         row = np.arange(count)
         each = row % len(features)
-        placement = row // (2 * len(features))
-        problem.add_points("artefact", features, "free", q_rad, np.zeros(count, dtype=np.int64), each, placement, 0.02)
+        rows = {"q_rad": q_rad, "probe": np.zeros(count, dtype=np.int64), "feature": each}
+        bar = len(features) == 2
+        problem.add(
+            "points",
+            "artefact",
+            features_mm=features,
+            placement=row // (2 * len(features)),
+            dimensions=[("length", 443.172, 0.02, False)] if bar else [],
+            feature_u_mm=None if bar else np.full(len(features), 0.02),
+            **rows,
+        )
 
     return add
 
@@ -68,7 +82,7 @@ def _u_of_longest_link(rows: int, length_u_mm: float) -> float:
     problem = _core.Problem(truth, np.full(7, 5e-6), 0.008)
     q_rad, p_rad = np.random.default_rng(5).uniform(-2.5, 2.5, (2, rows, 7))
     length_mm = np.linalg.norm(truth.tip(q_rad) - truth.tip(p_rad), axis=1)
-    problem.add_lengths("bar", q_rad, p_rad, np.zeros(rows, dtype=np.int64), length_mm, length_u_mm)
+    _add_lengths(problem, q_rad, p_rad, length_mm, length_u_mm)
     fitted = _core.fit(problem, np.zeros(27, dtype=bool))
     column = truth.parameter_names.index("joint.3.d")
     return float(np.sqrt(fitted.covariance[column, column]))

@@ -40,8 +40,17 @@ def touched(arm, features, rng, places, each=1):
 
 def problem_of(arm, features, q, feature, placement, u_mm, fitted=False, noise=NOISE):
     problem = _core.Problem(core_arm(arm), *((noise.encoder_rad, noise.seat_mm) if noise else ()))
-    probe = np.zeros(len(q), np.int64)
-    problem.add_points("artefact", features, "free", q, probe, feature, placement, u_mm, None, fitted)
+    problem.add(
+        "points",
+        "artefact",
+        features_mm=features,
+        q_rad=q,
+        probe=np.zeros(len(q), np.int64),
+        feature=feature,
+        placement=placement,
+        feature_u_mm=u_mm,
+        features_fitted=fitted,
+    )
     return problem
 
 
@@ -122,11 +131,12 @@ def test_a_feature_that_is_touched_once_is_that_much_noisier():
     """Its uncertainty is added to the reading's: the same fit as with a seat that is that much worse."""
     truth, rng = table_2(r_mm=40.0), np.random.default_rng(5)
     points = virtual.coordinates(truth, rng, 90, False, virtual.Touches(5e-6, 0.02))
-    probe, each = np.zeros(90, np.int64), np.arange(90)
+    rows = {"q_rad": points.q_rad, "probe": np.zeros(90, np.int64), "feature": np.arange(90)}
     found = []
     for u_mm, seat_mm in ((0.03, 0.02), (0.0, np.hypot(0.03, 0.02))):
         problem = _core.Problem(core_arm(truth), NOISE.encoder_rad, float(seat_mm))
-        problem.add_points("tracker", points.features_mm, "arm", points.q_rad, probe, each, probe, np.full(90, u_mm))
+        grid = {"features_mm": points.features_mm, "frame": "arm", "feature_u_mm": np.full(90, u_mm)}
+        problem.add("points", "tracker", **grid, **rows)
         found.append(_core.fit(problem, np.zeros(27, bool)))
     ours, noisier = found
     np.testing.assert_allclose(ours.parameters, noisier.parameters, rtol=0, atol=1e-9)

@@ -126,8 +126,9 @@ def test_residuals_are_distances_from_the_surface(readings):
 
 def diameter_problem(truth, group, start, stated, u_mm, fitted):
     problem = _core.Problem(core_arm(start), stated.encoder_rad, stated.seat_mm)
-    probe = np.zeros(len(group.q_rad), np.int64)
-    problem.add_sphere("ball", group.diameter_mm, group.balls_mm, group.q_rad, probe, group.placement, u_mm, fitted)
+    rows = {"q_rad": group.q_rad, "probe": np.zeros(len(group.q_rad), np.int64), "placement": group.placement}
+    diameter = [("diameter", group.diameter_mm, u_mm, fitted)]
+    problem.add("sphere", "ball", dimensions=diameter, balls_mm=group.balls_mm, **rows)
     return problem
 
 
@@ -171,16 +172,18 @@ def test_a_flat_needs_no_ball_but_several_balls_need_theirs():
     placement, probe = group.placement, np.zeros(len(group.q_rad), np.int64)
     for ball_mm in (0.0, 6.0):
         problem = _core.Problem(core_arm(truth))
-        problem.add_plane(np.array([ball_mm]), group.q_rad, probe, placement)
+        balls_mm = np.array([ball_mm])
+        problem.add("plane", "flat", balls_mm=balls_mm, q_rad=group.q_rad, probe=probe, placement=placement)
         assert _core.fit(problem, np.ones(27, bool)).rms_mm < 1e-9
     two = replace(truth, tips_mm=np.vstack([truth.tips_mm, truth.tips_mm + np.array([5.0, 0.0, 30.0])]))
     larger = virtual.poses_for_points(
         two, two.tip(group.q_rad, 0) + 2.0 * group.normal[placement], rng, probe=1
     )  # a ball of 10 mm stands off 2 mm farther
     q = np.vstack([group.q_rad, larger])
+    rows = {"q_rad": q, "probe": np.repeat([0, 1], len(probe)), "placement": np.tile(placement, 2)}
     problem = _core.Problem(core_arm(two))
-    problem.add_plane(np.array([6.0, 10.0]), q, np.repeat([0, 1], len(probe)), np.tile(placement, 2))
+    problem.add("plane", "flat", balls_mm=np.array([6.0, 10.0]), **rows)
     assert _core.fit(problem, np.ones(30, bool)).rms_mm < 1e-8
     wrong = _core.Problem(core_arm(two))
-    wrong.add_plane(np.array([6.0, 6.0]), q, np.repeat([0, 1], len(probe)), np.tile(placement, 2))
+    wrong.add("plane", "flat", balls_mm=np.array([6.0, 6.0]), **rows)
     assert _core.fit(wrong, np.ones(30, bool)).rms_mm > 0.5

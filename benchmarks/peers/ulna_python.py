@@ -20,7 +20,8 @@ def _arm(x: F64) -> _core.Arm:
 
 def _problem(x: F64, data: Lengths, encoder_u_rad: F64 | None = None) -> _core.Problem:
     problem = _core.Problem(_arm(x), encoder_u_rad, None)
-    problem.add_lengths("lengths", data.q_rad, data.p_rad, np.zeros(len(data.length_mm), np.int64), data.length_mm)
+    rows = {"q_rad": data.q_rad, "p_rad": data.p_rad, "probe": np.zeros(len(data.length_mm), np.int64)}
+    problem.add("length", "lengths", measured_mm=data.length_mm, **rows)
     return problem
 
 

@@ -136,54 +136,44 @@ class Identifiability:
     def not_determined(self) -> list[str]:
         """Every free parameter that takes part in a lost direction."""
 
+class KindOfArtefact(TypedDict):
+    needs: list[str]  # arguments of `Problem.add` that must be given
+    takes: list[str]  # that may be given besides; any other is an error
+    dimensions: dict[str, tuple[str, bool]]  # unit ("mm" or "1"), and whether it must be stated
+
+def kinds() -> dict[str, KindOfArtefact]:
+    """Every kind of artefact that the core knows."""
+
 class Problem:
     """Readings of features of placed artefacts, to be explained by one arm."""
 
     def __init__(self, arm: Arm, encoder_u_rad: F64 | None = None, seat_u_mm: float | None = None) -> None:
         """Standard deviations of the noise: (n,) per encoder, and of a touch per coordinate. Both None: every reading
         weighs one."""
-    def add_lengths(
+    def add(
         self,
+        kind: str,  # one of `kinds()`
         artefact: str,
+        *,
         q_rad: F64,  # (N, n)
-        p_rad: F64,  # (N, n) the second pose
         probe: I64,  # (N,) index into the arm's probes
-        length_mm: F64,  # (N,) distance between their tips
-        length_u_mm: float = 0.0,  # standard uncertainty, common to all rows
-        fitted: bool = False,  # whether the length may change within it
+        placement: I64 | None = None,  # (N,) any labels; equal means the same standing. Ignored for frame = "arm"
+        feature: I64 | None = None,  # (N,) index into features
+        p_rad: F64 | None = None,  # (N, n) a second pose
+        measured_mm: F64 | None = None,  # (N,) the length between two poses
+        features_mm: F64 | None = None,  # (F, 3); a bar has (0,0,0) and (L,0,0); a seat has (0,0,0)
+        labels: Sequence[str] | None = None,  # (F,) names of the features; else they are counted from 1
+        feature_u_mm: F64 | None = None,  # (F,) standard uncertainty of the coordinates of each
+        features_fitted: bool = False,  # whether they may move within that
+        frame: str | None = None,  # "free" (None): each placement has an unknown pose; "arm": in the base frame
+        dimensions: Sequence[tuple[str, float, float, bool]] = (),  # name, value, standard uncertainty, whether it is
+        # an unknown of the fit: within its uncertainty, freely where that is 0
+        inside: bool = False,  # whether a hollow is touched
+        balls_mm: F64 | None = None,  # (P,) diameter of each probe's ball
         warmth_k: F64 | None = None,
     ) -> int:
-        """Rows of two poses and the distance between their tips. Returns the group's number."""
-    def add_points(
-        self,
-        artefact: str,
-        features_mm: F64,  # (F, 3); a bar has (0,0,0) and (L,0,0); a seat has (0,0,0)
-        frame: str,  # "free": each placement has an unknown pose; "arm": coordinates in the base frame
-        q_rad: F64,  # (N, n)
-        probe: I64,  # (N,)
-        feature: I64,  # (N,) index into features
-        placement: I64,  # (N,) any labels; equal means the same standing of the artefact. Ignored for frame = "arm"
-        u_mm: float | F64 | None = None,  # of a bar (two features, free) one number: its length's; else of each feature
-        labels: Sequence[str] | None = None,  # names of the features
-        fitted: bool = False,  # whether what is uncertain may move within u
-        warmth_k: F64 | None = None,
-    ) -> int: ...
-    def add_sphere(
-        self,
-        artefact: str,
-        diameter_mm: float,
-        balls_mm: F64,  # (P,) diameter of each probe's ball
-        q_rad: F64,
-        probe: I64,
-        placement: I64,
-        diameter_u_mm: float = 0.0,
-        fitted: bool = False,  # the diameter: within its uncertainty, freely where that is 0
-        inside: bool = False,
-        warmth_k: F64 | None = None,
-    ) -> int:
-        """Touches of a ball's surface, or of a hollow's."""
-    def add_plane(self, balls_mm: F64, q_rad: F64, probe: I64, placement: I64, warmth_k: F64 | None = None) -> int:
-        """Touches of a flat."""
+        """Readings of one artefact; returns the group's number. Raises UlnaError for a kind that there is not, and for
+        what a kind needs and lacks or has no use for, by name."""
     def add_prior(self, parameter: int, value: float, u: float) -> None:
         """What is known of a parameter beforehand, in its unit; the number is that in `parameter_names`."""
     def set_loss(self, name: str) -> None:
@@ -194,7 +184,8 @@ class Problem:
     def parameter_names(self) -> list[str]:
         """The arm's, then the fitted dimensions of artefacts, such as `artefact.ball.diameter`."""
     @property
-    def parameter_units(self) -> list[str]: ...
+    def parameter_units(self) -> list[str]:
+        """Those of the arm, or "mm" or "1" of a dimension."""
     @property
     def parameters(self) -> F64: ...
     def with_arm(self, arm: Arm) -> Problem: ...

@@ -43,7 +43,7 @@ def assemble(study: Study, hold: Callable[[list[str]], NDArray[np.bool_]] | None
     try:
         problem = _core.Problem(arm.core, noise.encoder_rad, noise.seat_mm)
         for group in study.readings:
-            _ADD.get(group.artefact.kind, _add_points)(problem, study, arm, group)
+            _ADD[group.artefact.kind](problem, study, arm, group)
         names, units = problem.parameter_names, problem.parameter_units
         mask = hold_mask(study, names) if hold is None else hold(names)
         for parameter, (value, u) in priors(study, names, units, problem.parameters.tolist(), mask).items():
@@ -71,65 +71,80 @@ def warmth_k(study: Study, arm: Arm, group: Readings) -> F64 | None:
 def _add_lengths(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
     assert group.p_rad is not None
     assert group.length_mm is not None
-    problem.add_lengths(
-        group.artefact.name,
-        np.ascontiguousarray(group.q_rad),
-        np.ascontiguousarray(group.p_rad),
-        group.probe,
-        group.length_mm,
-        group.artefact.u_mm,
-        group.artefact.fitted,
-        warmth_k(study, arm, group),
+    artefact = group.artefact
+    uncertain = artefact.u_mm > 0.0 and len(group) > 0
+    problem.add(
+        "length",
+        artefact.name,
+        q_rad=np.ascontiguousarray(group.q_rad),
+        p_rad=np.ascontiguousarray(group.p_rad),
+        probe=group.probe,
+        measured_mm=group.length_mm,
+        dimensions=[("length", group.length_mm[0], artefact.u_mm, artefact.fitted)] if uncertain else [],
+        warmth_k=warmth_k(study, arm, group),
     )
 
 
 def _add_points(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
     artefact = group.artefact
-    each = artefact.feature_u_mm
-    problem.add_points(
+    features_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
+    # of a bar the length is uncertain, of other artefacts every feature by itself
+    bar = artefact.kind == "bar"
+    each = artefact.feature_u_mm or [artefact.u_mm] * len(artefact.features)
+    length_mm = float(np.linalg.norm(features_mm[1] - features_mm[0])) if bar else 0.0
+    problem.add(
+        "points",
         artefact.name,
-        np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3),
-        artefact.frame,
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.feature,
-        group.placement_code,
-        # of a bar the length is uncertain, of other artefacts every feature by itself
-        artefact.u_mm if artefact.kind == "bar" else np.array(each or [artefact.u_mm] * len(artefact.features)),
-        list(artefact.features),
-        artefact.fitted,
-        warmth_k(study, arm, group),
+        features_mm=features_mm,
+        frame=artefact.frame,
+        q_rad=np.ascontiguousarray(group.q_rad),
+        probe=group.probe,
+        feature=group.feature,
+        placement=group.placement_code,
+        dimensions=[("length", length_mm, artefact.u_mm, artefact.fitted)] if bar and artefact.u_mm > 0.0 else [],
+        feature_u_mm=None if bar else np.array(each),
+        features_fitted=artefact.fitted and not bar,
+        labels=list(artefact.features),
+        warmth_k=warmth_k(study, arm, group),
     )
 
 
 def _add_sphere(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
     artefact = group.artefact
     assert artefact.diameter_mm is not None
-    problem.add_sphere(
+    problem.add(
+        "sphere",
         artefact.name,
-        artefact.diameter_mm,
-        balls_mm(study, arm, group),
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.placement_code,
-        artefact.u_mm,
-        artefact.fitted,
-        artefact.inside,
-        warmth_k(study, arm, group),
+        dimensions=[("diameter", artefact.diameter_mm, artefact.u_mm, artefact.fitted)],
+        balls_mm=balls_mm(study, arm, group),
+        q_rad=np.ascontiguousarray(group.q_rad),
+        probe=group.probe,
+        placement=group.placement_code,
+        inside=artefact.inside,
+        warmth_k=warmth_k(study, arm, group),
     )
 
 
 def _add_plane(problem: _core.Problem, study: Study, arm: Arm, group: Readings) -> None:
-    problem.add_plane(
-        balls_mm(study, arm, group),
-        np.ascontiguousarray(group.q_rad),
-        group.probe,
-        group.placement_code,
-        warmth_k(study, arm, group),
+    problem.add(
+        "plane",
+        group.artefact.name,
+        balls_mm=balls_mm(study, arm, group),
+        q_rad=np.ascontiguousarray(group.q_rad),
+        probe=group.probe,
+        placement=group.placement_code,
+        warmth_k=warmth_k(study, arm, group),
     )
 
 
-_ADD: dict[str, Callable[..., Any]] = {"length": _add_lengths, "sphere": _add_sphere, "plane": _add_plane}
+_ADD: dict[str, Callable[..., Any]] = {
+    "bar": _add_points,
+    "seat": _add_points,
+    "points": _add_points,
+    "length": _add_lengths,
+    "sphere": _add_sphere,
+    "plane": _add_plane,
+}
 
 
 def balls_mm(study: Study, arm: Arm, group: Readings) -> F64:

@@ -36,20 +36,19 @@ def core_problem(arm: Chain | Affected, groups: Groups, noise: Noise | None = No
         q_rad, warmth_k = split(arm, group.q_rad)
         if isinstance(group, Lengths):
             p_rad, _ = split(arm, group.p_rad)
-            index = problem.add_lengths(f"lengths {number}", q_rad, p_rad, probe, group.length_mm, warmth_k=warmth_k)
+            of = {"p_rad": p_rad, "measured_mm": group.length_mm}
+            index = problem.add("length", f"lengths {number}", q_rad=q_rad, probe=probe, warmth_k=warmth_k, **of)
         elif isinstance(group, Points):
-            frame = "free" if group.placed else "arm"
-            feature, placement = group.feature.astype(np.int64), group.placement.astype(np.int64)
-            index = problem.add_points(
-                f"points {number}", group.features_mm, frame, q_rad, probe, feature, placement, warmth_k=warmth_k
-            )
+            of = {"features_mm": group.features_mm, "frame": "free" if group.placed else "arm"}
+            of |= {"feature": group.feature.astype(np.int64), "placement": group.placement.astype(np.int64)}
+            index = problem.add("points", f"points {number}", q_rad=q_rad, probe=probe, warmth_k=warmth_k, **of)
         elif isinstance(group, Sphere):
-            touched = (q_rad, probe, group.placement.astype(np.int64))
-            index = problem.add_sphere(
-                f"ball {number}", group.diameter_mm, group.balls_mm, *touched, inside=group.inside, warmth_k=warmth_k
-            )
+            of = {"dimensions": [("diameter", group.diameter_mm, 0.0, False)], "inside": group.inside}
+            of |= {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
+            index = problem.add("sphere", f"ball {number}", q_rad=q_rad, probe=probe, warmth_k=warmth_k, **of)
         elif isinstance(group, Plane):
-            index = problem.add_plane(group.balls_mm, q_rad, probe, group.placement.astype(np.int64), warmth_k)
+            of = {"balls_mm": group.balls_mm, "placement": group.placement.astype(np.int64)}
+            index = problem.add("plane", f"flat {number}", q_rad=q_rad, probe=probe, warmth_k=warmth_k, **of)
         assert index == number
     return problem
 

@@ -5,13 +5,9 @@ use crate::arrays::{array1, indices, rows, slice, warmth};
 use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use std::borrow::Cow;
-use ulna::artefacts::length::LengthRows;
-use ulna::artefacts::points::{Features, Frame, Uncertainty};
-use ulna::artefacts::surface::Side;
-use ulna::artefacts::{Noise, TouchRows};
+use pyo3::types::PyDict;
+use ulna::artefacts::{Frame, KINDS, Noise, Rows, Size, Stated};
 use ulna::kinematics::Angles;
-use ulna::problem::BallArtefact;
 use ulna::problem::priors::Prior;
 use ulna::solver::losses::Loss;
 
@@ -19,45 +15,6 @@ use ulna::solver::losses::Loss;
 #[pyclass(module = "ulna._core")]
 pub struct Problem {
     pub inner: ulna::problem::Problem,
-}
-
-/// Touches as they were handed over.
-struct Touched<'a> {
-    q_rad: Cow<'a, [f64]>,
-    warmth_k: Cow<'a, [f64]>,
-    probe: Vec<usize>,
-    feature: Vec<usize>,
-    placement: Cow<'a, [i64]>,
-}
-
-impl<'a> Touched<'a> {
-    fn new(
-        encoders: usize,
-        q_rad: &'a PyReadonlyArray2<'_, f64>,
-        warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
-        probe: &PyReadonlyArray1<'_, i64>,
-        feature: Option<&PyReadonlyArray1<'_, i64>>,
-        placement: &'a PyReadonlyArray1<'_, i64>,
-    ) -> PyResult<Touched<'a>> {
-        let q_rad = rows(q_rad, encoders, "the poses")?;
-        let count = q_rad.len() / encoders;
-        Ok(Touched {
-            warmth_k: warmth(warmth_k, count, encoders)?,
-            probe: indices(probe, "probe")?,
-            feature: feature.map_or_else(|| Ok(vec![0; count]), |feature| indices(feature, "feature"))?,
-            placement: slice(placement),
-            q_rad,
-        })
-    }
-
-    fn rows(&self) -> TouchRows<'_> {
-        TouchRows {
-            poses: Angles { q_rad: &self.q_rad, warmth_k: &self.warmth_k },
-            probe: &self.probe,
-            feature: &self.feature,
-            placement: &self.placement,
-        }
-    }
 }
 
 #[pymethods]
@@ -73,123 +30,62 @@ impl Problem {
         Ok(Problem { inner })
     }
 
-    #[pyo3(signature = (artefact, q_rad, p_rad, probe, length_mm, length_u_mm=0.0, fitted=false, warmth_k=None))]
+    #[pyo3(signature = (kind, artefact, *, q_rad, probe, placement=None, feature=None, p_rad=None, measured_mm=None,
+                        features_mm=None, labels=None, feature_u_mm=None, features_fitted=false, frame=None,
+                        dimensions=vec![], inside=false, balls_mm=None, warmth_k=None))]
     #[allow(clippy::too_many_arguments)]
-    fn add_lengths(
+    fn add(
         &mut self,
+        kind: &str,
         artefact: &str,
         q_rad: PyReadonlyArray2<'_, f64>,
-        p_rad: PyReadonlyArray2<'_, f64>,
         probe: PyReadonlyArray1<'_, i64>,
-        length_mm: PyReadonlyArray1<'_, f64>,
-        length_u_mm: f64,
-        fitted: bool,
-        warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
-    ) -> PyResult<usize> {
-        let n = self.inner.arm().encoders();
-        let q_rad = rows(&q_rad, n, "the first poses")?;
-        let data = LengthRows {
-            warmth_k: &warmth(warmth_k.as_ref(), q_rad.len() / n, n)?,
-            q_rad: &q_rad,
-            p_rad: &rows(&p_rad, n, "the second poses")?,
-            probe: &indices(&probe, "probe")?,
-            length_mm: &slice(&length_mm),
-        };
-        self.inner.add_lengths(artefact, data, length_u_mm, fitted).map_err(raise)
-    }
-
-    #[pyo3(signature = (artefact, features_mm, frame, q_rad, probe, feature, placement, u_mm=None, labels=None,
-                        fitted=false, warmth_k=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn add_points(
-        &mut self,
-        artefact: &str,
-        features_mm: PyReadonlyArray2<'_, f64>,
-        frame: &str,
-        q_rad: PyReadonlyArray2<'_, f64>,
-        probe: PyReadonlyArray1<'_, i64>,
-        feature: PyReadonlyArray1<'_, i64>,
-        placement: PyReadonlyArray1<'_, i64>,
-        u_mm: Option<Bound<'_, PyAny>>,
+        placement: Option<PyReadonlyArray1<'_, i64>>,
+        feature: Option<PyReadonlyArray1<'_, i64>>,
+        p_rad: Option<PyReadonlyArray2<'_, f64>>,
+        measured_mm: Option<PyReadonlyArray1<'_, f64>>,
+        features_mm: Option<PyReadonlyArray2<'_, f64>>,
         labels: Option<Vec<String>>,
-        fitted: bool,
-        warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
-    ) -> PyResult<usize> {
-        let coordinates = rows(&features_mm, 3, "the features")?;
-        let coordinates: Vec<[f64; 3]> = coordinates.chunks_exact(3).map(|f| [f[0], f[1], f[2]]).collect();
-        let count = coordinates.len();
-        let labels = labels.unwrap_or_else(|| (1..=count).map(|k| k.to_string()).collect());
-        let one = u_mm.as_ref().map_or(Some(0.0), |u| u.extract::<f64>().ok());
-        let each = match (one, &u_mm) {
-            (None, Some(u)) => u.extract::<PyReadonlyArray1<'_, f64>>()?.as_array().to_vec(),
-            (one, _) => vec![one.unwrap_or(0.0); count],
-        };
-        let features = Features {
-            name: artefact,
-            labels: &labels,
-            coordinates_mm: &coordinates,
-            // one number for a bar is that of its length
-            u: match one {
-                Some(0.0) => Uncertainty::None,
-                Some(u) if count == 2 && frame == "free" => Uncertainty::Length(u),
-                _ => Uncertainty::Each(&each),
-            },
-            fitted,
-            frame: match frame {
-                "free" => Frame::Free,
-                "arm" => Frame::Arm,
-                other => {
-                    let message = format!("frame {other:?} of artefact {artefact}: expected \"free\" or \"arm\"");
-                    return Err(UlnaError::new_err(message));
-                }
-            },
-        };
-        let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, Some(&feature), &placement)?;
-        self.inner.add_points(&features, touched.rows()).map_err(raise)
-    }
-
-    #[pyo3(signature = (artefact, diameter_mm, balls_mm, q_rad, probe, placement, diameter_u_mm=0.0, fitted=false,
-                        inside=false, warmth_k=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn add_sphere(
-        &mut self,
-        artefact: &str,
-        diameter_mm: f64,
-        balls_mm: PyReadonlyArray1<'_, f64>,
-        q_rad: PyReadonlyArray2<'_, f64>,
-        probe: PyReadonlyArray1<'_, i64>,
-        placement: PyReadonlyArray1<'_, i64>,
-        diameter_u_mm: f64,
-        fitted: bool,
+        feature_u_mm: Option<PyReadonlyArray1<'_, f64>>,
+        features_fitted: bool,
+        frame: Option<&str>,
+        dimensions: Vec<(String, f64, f64, bool)>,
         inside: bool,
+        balls_mm: Option<PyReadonlyArray1<'_, f64>>,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
-        let ball = BallArtefact {
+        let n = self.inner.arm().encoders();
+        let q_rad = rows(&q_rad, n, "the poses")?;
+        let p_rad = p_rad.as_ref().map(|p_rad| rows(p_rad, n, "the second poses")).transpose()?;
+        let feature = feature.as_ref().map(|feature| indices(feature, "feature")).transpose()?;
+        let features = features_mm.as_ref().map(|features| rows(features, 3, "the features")).transpose()?;
+        let features = features.as_ref().map(|features| features.as_chunks::<3>().0);
+        let (placement, measured_mm) = (placement.as_ref().map(slice), measured_mm.as_ref().map(slice));
+        let (feature_u_mm, balls_mm) = (feature_u_mm.as_ref().map(slice), balls_mm.as_ref().map(slice));
+        let mut sizes = Vec::with_capacity(dimensions.len());
+        for (name, value, u, fitted) in &dimensions {
+            sizes.push(Size { name, value: *value, u: *u, fitted: *fitted });
+        }
+        let stated = Stated {
             name: artefact,
-            diameter_mm,
-            u_mm: diameter_u_mm,
-            fitted,
-            side: if inside { Side::Inside } else { Side::Outside },
-            balls_mm: &slice(&balls_mm),
+            dimensions: &sizes,
+            features_mm: features,
+            labels: labels.as_deref(),
+            feature_u_mm: feature_u_mm.as_deref(),
+            features_fitted,
+            frame: frame.map(|frame| frame_of(frame, artefact)).transpose()?,
+            inside,
+            balls_mm: balls_mm.as_deref(),
         };
-        let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, None, &placement)?;
-        self.inner.add_sphere(&ball, touched.rows()).map_err(raise)
-    }
-
-    #[pyo3(signature = (balls_mm, q_rad, probe, placement, warmth_k=None))]
-    fn add_plane(
-        &mut self,
-        balls_mm: PyReadonlyArray1<'_, f64>,
-        q_rad: PyReadonlyArray2<'_, f64>,
-        probe: PyReadonlyArray1<'_, i64>,
-        placement: PyReadonlyArray1<'_, i64>,
-        warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
-    ) -> PyResult<usize> {
-        let n = self.inner.arm().encoders();
-        let touched = Touched::new(n, &q_rad, warmth_k.as_ref(), &probe, None, &placement)?;
-        self.inner.add_plane(&slice(&balls_mm), touched.rows()).map_err(raise)
+        let rows = Rows {
+            poses: Angles { q_rad: &q_rad, warmth_k: &warmth(warmth_k.as_ref(), q_rad.len() / n, n)? },
+            probe: &indices(&probe, "probe")?,
+            p_rad: p_rad.as_deref(),
+            feature: feature.as_deref(),
+            placement: placement.as_deref(),
+            measured_mm: measured_mm.as_deref(),
+        };
+        self.inner.add(kind, &stated, &rows).map_err(raise)
     }
 
     fn add_prior(&mut self, parameter: usize, value: f64, u: f64) -> PyResult<()> {
@@ -235,4 +131,33 @@ impl Problem {
         inner.set_arm(arm.inner.clone());
         Ok(Problem { inner })
     }
+}
+
+fn frame_of(frame: &str, artefact: &str) -> PyResult<Frame> {
+    match frame {
+        "free" => Ok(Frame::Free),
+        "arm" => Ok(Frame::Arm),
+        other => {
+            let message = format!("frame {other:?} of artefact {artefact}: expected \"free\" or \"arm\"");
+            Err(UlnaError::new_err(message))
+        }
+    }
+}
+
+/// The kinds of artefacts that [`Problem::add`] knows.
+#[pyfunction]
+pub fn kinds(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for kind in KINDS {
+        let one = PyDict::new(py);
+        one.set_item("needs", kind.needs.iter().map(|column| column.name()).collect::<Vec<_>>())?;
+        one.set_item("takes", kind.takes.iter().map(|column| column.name()).collect::<Vec<_>>())?;
+        let dimensions = PyDict::new(py);
+        for asked in kind.dimensions {
+            dimensions.set_item(asked.name, (asked.unit.as_str(), asked.needed))?;
+        }
+        one.set_item("dimensions", dimensions)?;
+        all.set_item(kind.name, one)?;
+    }
+    Ok(all)
 }

@@ -12,8 +12,7 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 use ulna::arm::Unit;
-use ulna::artefacts::length::LengthRows;
-use ulna::artefacts::{Noise, Weighing};
+use ulna::artefacts::{Noise, Rows, Stated, Weighing};
 use ulna::fit::calibrate::{Options, Start, fit, solve};
 use ulna::fit::monte_carlo::{Repeat, recalibrate};
 use ulna::kinematics::{Angles, Chain, Poses, batch};
@@ -50,8 +49,14 @@ fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> 
     let distance = |k: usize| (0..3).map(|j| (from[3 * k + j] - to[3 * k + j]).powi(2)).sum::<f64>().sqrt();
     let length_mm: Vec<f64> = (0..count).map(distance).collect();
     let mut problem = Problem::new(start, noise).expect("a valid problem");
-    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &[], probe: &vec![0; count], length_mm: &length_mm };
-    problem.add_lengths("bar", rows, 0.0, false).expect("valid rows");
+    let rows = Rows {
+        poses: Angles::cold(&q),
+        probe: &vec![0; count],
+        p_rad: Some(&p),
+        measured_mm: Some(&length_mm),
+        ..Rows::default()
+    };
+    problem.add("length", &Stated { name: "bar", ..Stated::default() }, &rows).expect("valid rows");
     problem
 }
 

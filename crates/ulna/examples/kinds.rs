@@ -11,14 +11,12 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use shared::{Dropped, TABLE_2, arm, best};
 use std::f64::consts::PI;
 use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics};
-use ulna::artefacts::points::{Features, Frame, Uncertainty};
-use ulna::artefacts::surface::Side;
-use ulna::artefacts::{TouchRows, Weighing};
+use ulna::artefacts::{Rows, Size, Stated, Weighing};
 use ulna::kinematics::inverse::{Limits, posture_for_point};
 use ulna::kinematics::{Angles, tip_mm};
 use ulna::monitor::Unwatched;
+use ulna::problem::Problem;
 use ulna::problem::assembly::Assembly;
-use ulna::problem::{BallArtefact, Problem};
 use ulna::solver::LeastSquares;
 
 const TIP_MM: [f64; 3] = [10.0, 0.0, 200.0];
@@ -109,24 +107,21 @@ fn cost(problem: &mut Problem, touches: usize) -> f64 {
     seconds * 1e9 / touches as f64
 }
 
-fn of_points(arm: &Arm, touched: &Touched, coordinates_mm: &[Point]) -> Problem {
-    let labels: Vec<String> = (0..coordinates_mm.len()).map(|k| k.to_string()).collect();
-    let features = Features {
-        name: "artefact",
-        labels: &labels,
-        coordinates_mm,
-        u: Uncertainty::None,
-        fitted: false,
-        frame: Frame::Free,
-    };
+fn of(arm: &Arm, touched: &Touched, kind: &str, stated: &Stated) -> Problem {
     let mut problem = Problem::new(arm.clone(), None).expect("a valid problem");
-    problem.add_points(&features, rows(touched, &vec![0; touched.feature.len()])).expect("valid rows");
+    let rows = Rows {
+        poses: Angles::cold(&touched.q_rad),
+        probe: &vec![0; touched.feature.len()],
+        feature: stated.features_mm.map(|_| &touched.feature[..]),
+        placement: Some(&touched.placement),
+        ..Rows::default()
+    };
+    problem.add(kind, stated, &rows).expect("valid rows");
     problem
 }
 
-fn rows<'a>(touched: &'a Touched, probe: &'a [usize]) -> TouchRows<'a> {
-    let poses = Angles::cold(&touched.q_rad);
-    TouchRows { poses, probe, feature: &touched.feature, placement: &touched.placement }
+fn points(features_mm: &[Point]) -> Stated<'_> {
+    Stated { name: "artefact", features_mm: Some(features_mm), ..Stated::default() }
 }
 
 fn main() {
@@ -135,33 +130,19 @@ fn main() {
     let mut costs: Vec<(&str, f64)> = Vec::new();
 
     let bars = touch(&truth, bar, &mut rng);
-    let ends = [[0.0; 3], [300.0, 0.0, 0.0]];
-    for (name, standing, features) in
-        [("plate", plate as Standing, plate_mm()), ("seat", seat as Standing, vec![[0.0; 3]])]
-    {
+    let ends = points(&[[0.0; 3], [300.0, 0.0, 0.0]]);
+    costs.push(("bar", cost(&mut of(&truth, &bars, "points", &ends), bars.feature.len())));
+    let (plate_mm, ball) = (plate_mm(), Stated { name: "ball", balls_mm: Some(&[BALL_MM]), ..Stated::default() });
+    let diameter = [Size { name: "diameter", value: SPHERE_MM, u: 0.0, fitted: false }];
+    let kinds: [(&str, Standing, &str, Stated); 4] = [
+        ("plate", plate, "points", points(&plate_mm)),
+        ("seat", seat, "points", points(&[[0.0; 3]])),
+        ("sphere", sphere, "sphere", Stated { dimensions: &diameter, ..ball }),
+        ("plane", plane, "plane", ball),
+    ];
+    for (name, standing, kind, stated) in kinds {
         let touched = touch(&truth, standing, &mut rng);
-        costs.push((name, cost(&mut of_points(&truth, &touched, &features), touched.feature.len())));
-    }
-    costs.insert(0, ("bar", cost(&mut of_points(&truth, &bars, &ends), bars.feature.len())));
-
-    for name in ["sphere", "plane"] {
-        let touched = touch(&truth, if name == "sphere" { sphere } else { plane }, &mut rng);
-        let probe = vec![0; touched.feature.len()];
-        let mut problem = Problem::new(truth.clone(), None).expect("a valid problem");
-        if name == "sphere" {
-            let ball = BallArtefact {
-                name: "ball",
-                diameter_mm: SPHERE_MM,
-                u_mm: 0.0,
-                fitted: false,
-                side: Side::Outside,
-                balls_mm: &[BALL_MM],
-            };
-            problem.add_sphere(&ball, rows(&touched, &probe)).expect("valid rows");
-        } else {
-            problem.add_plane(&[BALL_MM], rows(&touched, &probe)).expect("valid rows");
-        }
-        costs.push((name, cost(&mut problem, touched.feature.len())));
+        costs.push((name, cost(&mut of(&truth, &touched, kind, &stated), touched.feature.len())));
     }
 
     let body = Body { mass_kg: 1.0, centre_mm: [0.0, 0.0, 50.0] };
@@ -173,7 +154,7 @@ fn main() {
         ("compliance", Effects { compliance: Some(compliance), ..Effects::default() }),
     ] {
         let arm = truth.with_effects(effects).expect("valid effects");
-        costs.push((name, cost(&mut of_points(&arm, &bars, &ends), bars.feature.len())));
+        costs.push((name, cost(&mut of(&arm, &bars, "points", &ends), bars.feature.len())));
     }
 
     let list: Vec<String> = costs.iter().map(|(name, ns)| format!("\"{name}\": {ns:.2}")).collect();

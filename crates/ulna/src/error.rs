@@ -48,6 +48,44 @@ pub enum Error {
         /// What it should be.
         expected: &'static str,
     },
+    /// No kind of artefact has this name.
+    #[error("artefact {artefact} is of kind {kind:?}; one of {known} was expected")]
+    NoSuchKind {
+        /// The artefact's name.
+        artefact: String,
+        /// The kind given.
+        kind: String,
+        /// The kinds that there are.
+        known: String,
+    },
+    /// A kind of artefact needs more than was stated.
+    #[error("artefact {artefact} is of kind {kind:?}, which needs {what}; it is not given")]
+    Missing {
+        /// The artefact's name.
+        artefact: String,
+        /// Its kind.
+        kind: &'static str,
+        /// What is missing.
+        what: String,
+    },
+    /// Something was stated that says nothing of a kind of artefact.
+    #[error("artefact {artefact} is of kind {kind:?}, which has no use for {what}; leave it out")]
+    Unused {
+        /// The artefact's name.
+        artefact: String,
+        /// Its kind.
+        kind: &'static str,
+        /// What was stated.
+        what: String,
+    },
+    /// Two things that were stated of an artefact cannot both be.
+    #[error("artefact {artefact}: {why}")]
+    Contradiction {
+        /// The artefact's name.
+        artefact: String,
+        /// What they are.
+        why: String,
+    },
     /// There is nothing to fit to.
     #[error("there are no readings")]
     NoReadings,

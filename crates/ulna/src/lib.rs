@@ -7,9 +7,10 @@
 //! | [`simd`] | columns and vectors of doubles, a sine and cosine | |
 //! | [`arm`] | joints, probes, effects, parameter names, units and order | |
 //! | [`solver`] | least squares from streamed rows, singular values, losses; knows no kinematics | `simd` |
+//! | [`geometry`] | least-squares spheres, planes and cylinders of points; knows no arm | |
 //! | [`design`] | which measurements to take, chosen by exchange; knows no kinematics | |
 //! | [`kinematics`] | from encoder angles to the tip, its derivatives, and back; plain and in batches | `arm`, `simd` |
-//! | [`artefacts`] | what is observed: readings of artefacts as residuals | `kinematics`, `solver` |
+//! | [`artefacts`] | what is observed: readings of artefacts as residuals | `kinematics`, `geometry`, `solver` |
 //! | [`problem`] | an arm and readings, what is known before, the free parameters as unknowns | `artefacts` |
 //! | [`identify`] | what readings cannot determine, in parameters and words | `problem` |
 //! | [`fit`] | the way to the minimum, and all that is judged of it | `identify` |
@@ -18,8 +19,7 @@
 //!
 //! ```
 //! use ulna::arm::{Arm, Joint, JointModel, Probe};
-//! use ulna::artefacts::TouchRows;
-//! use ulna::artefacts::points::{Features, Frame, Uncertainty};
+//! use ulna::artefacts::{Frame, Rows, Stated};
 //! use ulna::fit::calibrate::{Options, fit};
 //! use ulna::kinematics::{Angles, tip_mm};
 //! use ulna::monitor::Unwatched;
@@ -36,15 +36,12 @@
 //! // places in the arm's own frame, touched once each
 //! let q_rad: Vec<f64> = (0..30).map(|i| (f64::from(i) * 0.7).sin() * 2.0).collect();
 //! let places: Vec<[f64; 3]> = q_rad.chunks(3).map(|q| tip_mm(&truth, 0, q).into()).collect();
-//! let labels: Vec<String> = (1..=10).map(|k| format!("p{k}")).collect();
-//! let features = Features {
-//!     name: "grid", labels: &labels, coordinates_mm: &places, u: Uncertainty::None, fitted: false, frame: Frame::Arm,
-//! };
 //! let each: Vec<usize> = (0..10).collect();
-//! let rows = TouchRows { poses: Angles::cold(&q_rad), probe: &[0; 10], feature: &each, placement: &[0; 10] };
+//! let grid = Stated { name: "grid", features_mm: Some(&places), frame: Some(Frame::Arm), ..Stated::default() };
+//! let rows = Rows { poses: Angles::cold(&q_rad), probe: &[0; 10], feature: Some(&each), ..Rows::default() };
 //!
 //! let mut problem = Problem::new(nominal, None)?;
-//! problem.add_points(&features, rows)?;
+//! problem.add("points", &grid, &rows)?;
 //! let free: Vec<usize> = (0..problem.arm().parameter_count()).collect();
 //! let fitted = fit(&mut problem, &free, &Options::default(), &Unwatched)?;
 //! assert!((fitted.arm.joints()[0].a_mm - 200.0).abs() < 1e-6);
@@ -56,6 +53,7 @@ pub mod artefacts;
 pub mod design;
 pub mod error;
 pub mod fit;
+pub mod geometry;
 pub mod identify;
 pub mod kinematics;
 pub mod monitor;

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,17 +59,17 @@ def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Proble
     probes = np.full(count * per, probe, dtype=np.int64)
     standing = np.repeat(np.arange(count), per)
     balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
+    rows: dict[str, Any] = {"q_rad": flat, "probe": probes, "placement": standing}
     if artefact.kind == "sphere":
         assert artefact.diameter_mm is not None
-        problem.add_sphere(
-            artefact.name, artefact.diameter_mm, balls_mm, flat, probes, standing, inside=artefact.inside
-        )
+        diameter = [("diameter", artefact.diameter_mm, 0.0, False)]
+        problem.add("sphere", artefact.name, dimensions=diameter, balls_mm=balls_mm, inside=artefact.inside, **rows)
     elif artefact.kind == "plane":
-        problem.add_plane(balls_mm, flat, probes, standing)
+        problem.add("plane", artefact.name, balls_mm=balls_mm, **rows)
     else:
         points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
         feature = np.tile(np.repeat(np.arange(features), touches), count)
-        problem.add_points(artefact.name, points_mm, artefact.frame, flat, probes, feature, standing)
+        problem.add("points", artefact.name, features_mm=points_mm, frame=artefact.frame, feature=feature, **rows)
     return problem
 
 

@@ -11,16 +11,19 @@ pub enum Unit {
     PerKelvin,
     /// radian for each newton metre
     RadPerNewtonMetre,
+    /// a plain number: the scale of an instrument
+    One,
 }
 
 impl Unit {
-    /// `"rad"`, `"mm"`, `"1/K"` or `"rad/(N m)"`.
+    /// `"rad"`, `"mm"`, `"1/K"`, `"rad/(N m)"` or `"1"`.
     pub fn as_str(self) -> &'static str {
         match self {
             Unit::Rad => "rad",
             Unit::Mm => "mm",
             Unit::PerKelvin => "1/K",
             Unit::RadPerNewtonMetre => "rad/(N m)",
+            Unit::One => "1",
         }
     }
 }

@@ -34,6 +34,6 @@ impl Model {
 pub struct At<'a> {
     /// The arm.
     pub model: &'a Model,
-    /// The dimensions of the group's artefact, in the order of [`super::Readings::dimensions`], mm.
-    pub dimensions_mm: &'a [f64],
+    /// The dimensions of the group's artefact, in the order of [`super::Readings::dimensions`].
+    pub dimensions: &'a [f64],
 }

@@ -29,9 +29,9 @@ pub trait Readings: Debug + Send + Sync {
     /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.
     fn scale_free(&self) -> bool;
 
-    /// How fast each dimension grows with the arm where no length is known, mm.
+    /// How fast each dimension grows with the arm where no length is known.
     fn growing(&self, at: At) -> Vec<f64> {
-        vec![0.0; at.dimensions_mm.len()]
+        vec![0.0; at.dimensions.len()]
     }
 
     /// Whether the mirror image of the arm explains them as well.

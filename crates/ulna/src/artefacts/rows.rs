@@ -3,9 +3,15 @@
 use super::dimension::Unknowns;
 use super::model::Model;
 use super::tile::Tile;
+use super::writer::Writer;
+use crate::error::Result;
+use crate::simd::padded;
 use crate::solver::RowBlock;
 use crate::solver::reflect::fold_into;
 use std::ops::Range;
+
+/// The most unknowns that a standing has: those of a pose.
+pub(super) const MOST_OWN: usize = 6;
 
 /// Columns of a block of touches: the arm's parameters, the artefact's dimensions, the residual, the standing's unknowns.
 #[derive(Debug, Clone, Copy)]
@@ -34,18 +40,69 @@ impl Layout {
 
 /// Some readings of one standing within a tile, and where their equations go: component after component.
 pub(super) struct Place<'a> {
-    pub tile: &'a Tile,
+    tile: &'a Tile,
+    /// the first reading of the tile
+    start: usize,
     /// the readings, counted in the tile
-    pub in_tile: Range<usize>,
+    in_tile: Range<usize>,
     /// their probes
-    pub probe: &'a [usize],
+    probe: &'a [usize],
     /// equations of each reading
-    pub components: usize,
+    components: usize,
     /// rows of the block
     pub used: Range<usize>,
 }
 
-impl Place<'_> {
+impl<'a> Place<'a> {
+    /// Makes room for the equations of readings `rows` of a tile that begins at `start`.
+    pub fn reserve(
+        out: &mut Writer,
+        tile: &'a Tile,
+        start: usize,
+        rows: Range<usize>,
+        probe: &'a [usize],
+        components: usize,
+    ) -> Result<Place<'a>> {
+        let length = padded(components * rows.len());
+        out.reserve(length)?;
+        let used = out.block.rows..out.block.rows + length;
+        out.block.rows = used.end;
+        let in_tile = rows.start - start..rows.end - start;
+        Ok(Place { tile, start, in_tile, probe: &probe[rows], components, used })
+    }
+
+    /// The readings themselves.
+    fn rows(&self) -> impl Iterator<Item = usize> {
+        self.in_tile.clone().map(|row| self.start + row)
+    }
+
+    /// Writes a column, reading by reading.
+    pub fn write(&self, block: &mut RowBlock, column: usize, value: impl Fn(usize) -> [f64; 3]) {
+        let target = &mut block.columns.column_mut(column)[self.used.clone()];
+        let count = self.in_tile.len();
+        target[self.components * count..].fill(0.0);
+        for (i, row) in self.rows().enumerate() {
+            let values = value(row);
+            (0..self.components).for_each(|c| target[c * count + i] = values[c]);
+        }
+    }
+
+    /// Writes the columns of the standing's unknowns behind the residual.
+    pub fn write_own(&self, block: &mut RowBlock, unknowns: usize, values: impl Fn(usize, &mut [[f64; 3]; MOST_OWN])) {
+        let (first, count) = (block.residual + 1, self.in_tile.len());
+        for k in 0..unknowns {
+            block.columns.column_mut(first + k)[self.used.clone()][self.components * count..].fill(0.0);
+        }
+        let mut own = [[0.0; 3]; MOST_OWN];
+        for (i, row) in self.rows().enumerate() {
+            values(row, &mut own);
+            for (k, derivative) in own.iter().enumerate().take(unknowns) {
+                let target = &mut block.columns.column_mut(first + k)[self.used.clone()];
+                (0..self.components).for_each(|c| target[c * count + i] = derivative[c]);
+            }
+        }
+    }
+
     /// Writes the derivatives with respect to the arm's parameters; clears the other targets' columns.
     pub fn write_parameters(&self, block: &mut RowBlock, model: &Model, layout: Layout) {
         let m = self.in_tile.len();

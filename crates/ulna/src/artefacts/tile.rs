@@ -19,6 +19,15 @@ pub(super) trait Directions {
     fn direction<S: Simd>(&self, simd: S, component: usize, k: usize) -> [Lanes<S>; 3];
 }
 
+impl<D: Directions> Directions for &D {
+    const COUNT: usize = D::COUNT;
+
+    #[inline(always)]
+    fn direction<S: Simd>(&self, simd: S, component: usize, k: usize) -> [Lanes<S>; 3] {
+        (**self).direction(simd, component, k)
+    }
+}
+
 /// Derivatives of some readings.
 pub(super) struct Tile {
     /// the tip of each reading, mm

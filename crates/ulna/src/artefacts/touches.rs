@@ -2,25 +2,13 @@
 
 use super::model::Model;
 use super::noise::normal;
+use super::stated::Rows;
 use crate::kinematics::batch::tips_mm;
-use crate::kinematics::{Angles, Poses, Sample};
+use crate::kinematics::{Poses, Sample};
 use crate::simd::Columns;
 use nalgebra::Vector3;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::ops::Range;
-
-/// What rows of a file say.
-#[derive(Debug, Clone, Copy)]
-pub struct TouchRows<'a> {
-    /// The poses.
-    pub poses: Angles<'a>,
-    /// Which probe took each row.
-    pub probe: &'a [usize],
-    /// Which feature was touched.
-    pub feature: &'a [usize],
-    /// Which standing of the artefact: any labels.
-    pub placement: &'a [i64],
-}
 
 /// Touches, standing by standing.
 #[derive(Debug, Clone)]
@@ -37,25 +25,23 @@ pub(super) struct Touches {
 }
 
 impl Touches {
-    /// Sorted by standing (one for all rows where `together`), and by feature in each.
-    pub fn new(rows: TouchRows, encoders: usize, together: bool) -> Touches {
+    /// Sorted by standing (one for all rows where no placement is told), and by feature in each.
+    pub fn new(rows: &Rows, encoders: usize) -> Touches {
+        let count = rows.probe.len();
+        let feature = |row: usize| rows.feature.map_or(0, |feature| feature[row]);
         let mut first_seen = std::collections::HashMap::new();
-        let standing: Vec<usize> = rows
-            .placement
-            .iter()
-            .map(|&label| {
-                let next = first_seen.len();
-                let label = if together { 0 } else { label };
-                *first_seen.entry(label).or_insert(next)
-            })
-            .collect();
-        let mut order: Vec<usize> = (0..rows.feature.len()).collect();
-        order.sort_by_key(|&r| (standing[r], rows.feature[r], r));
+        let mut standing_of = |row: usize| {
+            let next = first_seen.len();
+            *first_seen.entry(rows.placement.map_or(0, |placement| placement[row])).or_insert(next)
+        };
+        let standing: Vec<usize> = (0..count).map(&mut standing_of).collect();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|&r| (standing[r], feature(r), r));
         let of_standing: Vec<usize> = order.iter().map(|&r| standing[r]).collect();
         Touches {
             poses: Poses::gathered(rows.poses, encoders, &order),
             probe: order.iter().map(|&r| rows.probe[r]).collect(),
-            feature: order.iter().map(|&r| rows.feature[r]).collect(),
+            feature: order.iter().map(|&r| feature(r)).collect(),
             standings: equal_runs(&of_standing),
             order,
             offset_mm: None,

@@ -300,7 +300,7 @@ pub fn fit_from(
         problem.set_unit(variance.sqrt().max(least_scatter(problem)));
         judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
     }
-    let considered = problem.considered_u_mm(free);
+    let considered = problem.considered_u(free);
     problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);
     Ok(Fitted {

@@ -157,7 +157,7 @@ fn descend(problem: &Problem, free: &[usize], pins: &[Pin], from: &[f64]) -> Res
 /// Standard uncertainty of every parameter; NaN where held or not determined.
 fn uncertainties(problem: &Problem, free: &[usize], pins: &[Pin], parameters: &[f64]) -> Result<Vec<f64>> {
     let (triangle, natural_scale) = triangle_at(problem, free, parameters, &Unwatched)?;
-    let considered = problem.considered_u_mm(free);
+    let considered = problem.considered_u(free);
     let inverse = if pins.is_empty() { FullRank::of(&triangle, free.len(), &natural_scale) } else { None };
     let variances = match inverse {
         Some(inverse) => inverse.variances_considering(&triangle, &considered),

@@ -42,6 +42,8 @@ pub struct Known {
 const EXPANSION_PER_K: f64 = 3e-5;
 /// A joint that gives way by more than this for a newton metre is broken, rad.
 const COMPLIANCE_RAD_PER_NM: f64 = 1e-3;
+/// An instrument that is wrong by a larger part than this is no instrument.
+const SCALE: f64 = 1e-3;
 
 impl Known {
     /// How well a parameter of this unit is known.
@@ -51,6 +53,7 @@ impl Known {
             Unit::Mm => self.length_mm,
             Unit::PerKelvin => EXPANSION_PER_K,
             Unit::RadPerNewtonMetre => COMPLIANCE_RAD_PER_NM,
+            Unit::One => SCALE,
         }
     }
 }

@@ -151,7 +151,7 @@ pub fn check_jacobian(arm: &Arm, probe: usize, poses: Angles) -> f64 {
     let reach = arm.reach_mm(probe);
     // a step that moves the tip by about as much as a thousandth of a radian does
     let size = |unit: Unit| match unit {
-        Unit::Rad | Unit::Mm => 1.0,
+        Unit::Rad | Unit::Mm | Unit::One => 1.0,
         Unit::PerKelvin => 1.0 / poses.warmth_k.iter().fold(10.0, |most: f64, t| most.max(t.abs())),
         Unit::RadPerNewtonMetre => {
             1.0 / arm.effects().compliance.as_ref().map_or(1.0, |c| c.most_nm(reach)).max(f64::MIN_POSITIVE)

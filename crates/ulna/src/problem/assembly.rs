@@ -97,9 +97,8 @@ impl<'a> Assembly<'a> {
         let columns = self.problem.arm().parameter_count() + most_dimensions + 1 + 6;
         let mut out = Writer::new(&mut self.buffers, columns, &self.model, sink, self.monitor);
         let mut streamed = Ok(());
-        for ((group, unknowns), dimensions_mm) in self.problem.groups().iter().zip(&mut self.unknowns).zip(&dimensions)
-        {
-            let at = At { model: &self.model, dimensions_mm };
+        for ((group, unknowns), own) in self.problem.groups().iter().zip(&mut self.unknowns).zip(&dimensions) {
+            let at = At { model: &self.model, dimensions: own };
             // without the considered ones, whose numbers are behind the unknowns
             let kept = (!considered).then(|| unknowns.dimensions.clone());
             if !considered {

@@ -2,7 +2,9 @@
 
 use super::priors::Prior;
 use crate::arm::{Arm, Unit};
-use crate::artefacts::{At, Dimension, Model, Noise, Readings, Unweighted, Weighing, Whitened, normal};
+use crate::artefacts::{
+    At, Dimension, LEAST_NOISE, MOST_MM, Model, Noise, Readings, Unweighted, Weighing, Whitened, normal,
+};
 use crate::error::{Error, Result};
 use crate::kinematics::Sample;
 use crate::solver::losses::Loss;
@@ -132,8 +134,8 @@ impl Problem {
     pub(super) fn for_each_at(&self, parameters: &[f64], mut each: impl FnMut(&dyn Readings, At)) {
         let mut model = Model::new(&self.arm);
         model.set_parameters(&parameters[..self.arm.parameter_count()]);
-        for (group, dimensions_mm) in self.groups.iter().zip(self.dimensions_at(parameters)) {
-            each(group.as_ref(), At { model: &model, dimensions_mm: &dimensions_mm });
+        for (group, dimensions) in self.groups.iter().zip(self.dimensions_at(parameters)) {
+            each(group.as_ref(), At { model: &model, dimensions: &dimensions });
         }
     }
 
@@ -255,8 +257,8 @@ impl Problem {
         let mut model = Model::new(&self.arm);
         model.set_parameters(&parameters[..self.arm.parameter_count()]);
         let dimensions = self.dimensions_at(parameters);
-        for (group, dimensions_mm) in self.groups.iter_mut().zip(&dimensions) {
-            group.weigh(At { model: &model, dimensions_mm }, self.noise.as_ref(), how);
+        for (group, dimensions) in self.groups.iter_mut().zip(&dimensions) {
+            group.weigh(At { model: &model, dimensions }, self.noise.as_ref(), how);
         }
     }
 
@@ -275,7 +277,7 @@ impl Problem {
     }
 
     /// The same readings, exact at these parameters, with new noise; priors and artefacts calibrated anew.
-    pub(crate) fn redrawn(&self, truth: &[f64], noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Problem {
+    pub fn redrawn(&self, truth: &[f64], noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Problem {
         let mut groups = Vec::new();
         self.for_each_at(truth, |group, at| groups.push(group.redrawn(at, noise, rng)));
         let mut drawn = self.with_groups(groups);
@@ -290,11 +292,8 @@ fn longest_reach_mm(arm: &Arm) -> f64 {
     (0..arm.probes().len()).map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// What no arm has: a link of ten kilometres, an angle of a thousand turns.
-pub(super) const MOST_MM: f64 = 1e7;
+/// What no arm has: an angle of a thousand turns.
 const MOST_RAD: f64 = 1e4;
-/// What no noise is: less than this is a slip, and its weights would not fit into a number.
-pub(super) const LEAST_NOISE: f64 = 1e-12;
 
 fn check_size(arm: &Arm) -> Result<()> {
     let units = arm.parameter_units();
@@ -304,6 +303,7 @@ fn check_size(arm: &Arm) -> Result<()> {
             Unit::Rad => (MOST_RAD, "at most 10000 rad"),
             Unit::PerKelvin => (1.0, "at most 1/K"),
             Unit::RadPerNewtonMetre => (MOST_RAD, "at most 10000 rad/(N m)"),
+            Unit::One => (MOST_MM, "at most 1e7"),
         };
         if value.abs() > most {
             return Err(Error::OutOfRange { what: format!("{name}, {},", unit.as_str()), value, expected });

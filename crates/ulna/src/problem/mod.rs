@@ -8,5 +8,4 @@ mod add;
 mod groups;
 mod parameters;
 
-pub use add::BallArtefact;
 pub use groups::Problem;

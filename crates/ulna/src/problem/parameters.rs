@@ -1,9 +1,9 @@
 //! A problem's parameters: the arm's, then the fitted dimensions of its artefacts; and what is known of them before.
 
-use super::groups::{LEAST_NOISE, MOST_MM, Problem};
+use super::groups::Problem;
 use super::priors::Prior;
 use crate::arm::{Arm, Compliance, JointModel, Unit};
-use crate::artefacts::Dimension;
+use crate::artefacts::{Dimension, LEAST_NOISE, MOST_MM};
 use crate::error::{Error, Result};
 
 /// How many kelvin a workshop's temperature changes, in round figures.
@@ -29,14 +29,14 @@ impl Problem {
     /// Their units.
     pub fn parameter_units(&self) -> Vec<Unit> {
         let mut units = self.arm.parameter_units();
-        units.extend(self.fitted_dimensions().map(|_| Unit::Mm));
+        units.extend(self.fitted_dimensions().map(|dimension| dimension.unit));
         units
     }
 
     /// Their values at the start.
     pub fn parameters(&self) -> Vec<f64> {
         let mut parameters = self.arm.parameters();
-        parameters.extend(self.fitted_dimensions().map(|dimension| dimension.value_mm));
+        parameters.extend(self.fitted_dimensions().map(|dimension| dimension.value));
         parameters
     }
 
@@ -46,7 +46,7 @@ impl Problem {
         let most_nm = self.arm.effects().compliance.as_ref().map_or(0.0, |c| c.most_nm(reach));
         let scale = |unit: Unit| match unit {
             Unit::Mm => 1.0,
-            Unit::Rad => reach,
+            Unit::Rad | Unit::One => reach,
             Unit::PerKelvin => reach * SOME_KELVIN,
             Unit::RadPerNewtonMetre => reach * most_nm.max(f64::MIN_POSITIVE),
         };
@@ -59,8 +59,8 @@ impl Problem {
         for (group, slots) in self.groups.iter().zip(&self.slots) {
             for (dimension, slot) in group.dimensions().iter().zip(slots) {
                 let Some(parameter) = *slot else { continue };
-                if dimension.u_mm > 0.0 && priors.iter().all(|prior| prior.parameter != parameter) {
-                    priors.push(Prior { parameter, value: dimension.value_mm, u: dimension.u_mm });
+                if dimension.u > 0.0 && priors.iter().all(|prior| prior.parameter != parameter) {
+                    priors.push(Prior { parameter, value: dimension.value, u: dimension.u });
                 }
             }
         }
@@ -69,11 +69,11 @@ impl Problem {
 
     /// Standard uncertainty of each dimension that is considered where these parameters are free: known with an
     /// uncertainty, and not fitted.
-    pub(crate) fn considered_u_mm(&self, free: &[usize]) -> Vec<f64> {
+    pub(crate) fn considered_u(&self, free: &[usize]) -> Vec<f64> {
         let of_groups = self.groups.iter().zip(&self.slots);
         let dimensions = of_groups.flat_map(|(group, slots)| group.dimensions().iter().zip(slots));
         let considered = dimensions.filter(|(_, slot)| slot.is_none_or(|parameter| !free.contains(&parameter)));
-        considered.map(|(dimension, _)| dimension.u_mm).collect()
+        considered.map(|(dimension, _)| dimension.u).collect()
     }
 
     /// What a whitened residual of one stands for, by which priors are weighed: one where noise is stated, else the scatter
@@ -89,7 +89,7 @@ impl Problem {
     /// The dimensions of every group at some parameters.
     pub(crate) fn dimensions_at(&self, parameters: &[f64]) -> Vec<Vec<f64>> {
         let value = |(dimension, slot): (&Dimension, &Option<usize>)| {
-            slot.map_or(dimension.value_mm, |parameter| parameters[parameter])
+            slot.map_or(dimension.value, |parameter| parameters[parameter])
         };
         let of_groups = self.groups.iter().zip(&self.slots);
         of_groups.map(|(group, slots)| group.dimensions().iter().zip(slots).map(value).collect()).collect()
@@ -115,7 +115,7 @@ impl Problem {
         turn.into_iter().chain(lift).collect()
     }
 
-    /// How fast every fitted dimension grows with the arm, where no length is known: parameter and mm.
+    /// How fast every fitted dimension grows with the arm, where no length is known: parameter and how much.
     pub(crate) fn growing_dimensions(&self, parameters: &[f64]) -> Vec<(usize, f64)> {
         let mut growing = Vec::new();
         let mut slots = self.slots.iter();

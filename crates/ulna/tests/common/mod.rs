@@ -1,15 +1,13 @@
 //! Arms and readings that the tests share.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod cases;
+
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
-use ulna::artefacts::length::LengthRows;
-use ulna::artefacts::points::{Features, Frame, Uncertainty};
-use ulna::artefacts::surface::Side;
-use ulna::artefacts::{Noise, TouchRows};
-use ulna::kinematics::{Angles, tip_mm};
-use ulna::problem::{BallArtefact, Problem};
+use ulna::artefacts::Noise;
+use ulna::kinematics::tip_mm;
 
 pub fn rng(seed: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(seed)
@@ -76,120 +74,10 @@ fn any_probes(rng: &mut Xoshiro256PlusPlus) -> Vec<Probe> {
     ["straight", "bent"].map(|name| Probe { name: name.into(), tip_mm: tip() }).to_vec()
 }
 
-/// Every kind of readings, not consistent with anything: `label`, and a function that adds them to a problem.
-pub type Kind = (&'static str, fn(&mut Problem, &mut Xoshiro256PlusPlus));
-
-pub const KINDS: [Kind; 14] = [
-    ("length", |p, r| lengths(p, r, 40)),
-    ("bar touched once", |p, r| points(p, r, Frame::Free, &[[0.0; 3], [443.0, 0.0, 0.0]], 20, 1)),
-    ("bar touched often", |p, r| points(p, r, Frame::Free, &[[0.0; 3], [443.0, 0.0, 0.0]], 3, 13)),
-    ("seat", |p, r| points(p, r, Frame::Free, &[[0.0; 3]], 2, 45)),
-    ("plate", |p, r| {
-        let plate = [[0.0; 3], [100.0, 0.0, 0.0], [0.0, 150.0, 0.0], [80.0, 90.0, 5.0]];
-        points(p, r, Frame::Free, &plate, 3, 4);
-    }),
-    ("coordinates", |p, r| {
-        let grid = [[300.0, 0.0, 100.0], [0.0, 400.0, 200.0], [-300.0, 200.0, 0.0]];
-        points(p, r, Frame::Arm, &grid, 1, 12);
-    }),
-    ("ball bar of many balls in line", |p, r| {
-        let bar: Vec<[f64; 3]> = (0..8).map(|k| [60.0 * f64::from(k), 0.0, 0.0]).collect();
-        points(p, r, Frame::Free, &bar, 3, 4);
-    }),
-    ("plate whose features may move", |p, r| {
-        let plate = [[0.0; 3], [100.0, 0.0, 0.0], [0.0, 150.0, 0.0], [80.0, 90.0, 5.0]];
-        let u = Uncertainty::Each(&[0.4, 0.0, 0.3, 0.2]);
-        uncertain_points(p, r, Frame::Free, &plate, (u, true), 3, 4);
-    }),
-    ("bar whose length may change", |p, r| {
-        let bar = [[0.0; 3], [443.0, 0.0, 0.0]];
-        uncertain_points(p, r, Frame::Free, &bar, (Uncertainty::Length(0.5), true), 12, 2);
-    }),
-    ("ball", |p, r| ball(p, r, false, Side::Outside)),
-    ("ball of unknown diameter", |p, r| ball(p, r, true, Side::Outside)),
-    ("hollow sphere", |p, r| ball(p, r, false, Side::Inside)),
-    ("flat", |p, r| flat(p, r, [6.0, 6.0])),
-    ("flat touched with two balls", |p, r| flat(p, r, [6.0, 40.0])),
-];
-
 pub fn noises(encoders: usize) -> [(&'static str, Option<Noise>); 3] {
     let seat_only = Noise { encoder_rad: vec![], seat_mm: 0.02 };
     let both = Noise { encoder_rad: vec![2e-5; encoders], seat_mm: 0.01 };
     [("no noise stated", None), ("seat noise", Some(seat_only)), ("encoder and seat noise", Some(both))]
-}
-
-fn lengths(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, count: usize) {
-    let n = problem.arm().encoders();
-    let (q, p) = (angles(rng, n * count), angles(rng, n * count));
-    let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
-    let length_mm: Vec<f64> = (0..count).map(|_| rng.random_range(100.0..900.0)).collect();
-    let warmth_k = warmth(rng, count);
-    let rows = LengthRows { q_rad: &q, p_rad: &p, warmth_k: &warmth_k, probe: &probe, length_mm: &length_mm };
-    problem.add_lengths("pairs", rows, 0.0, false).unwrap();
-}
-
-fn points(
-    problem: &mut Problem,
-    rng: &mut Xoshiro256PlusPlus,
-    frame: Frame,
-    features: &[[f64; 3]],
-    placements: usize,
-    touches: usize,
-) {
-    uncertain_points(problem, rng, frame, features, (Uncertainty::None, false), placements, touches);
-}
-
-/// Tips come close to the features by correcting nothing: residuals of tens of millimetres, as at a start.
-fn uncertain_points(
-    problem: &mut Problem,
-    rng: &mut Xoshiro256PlusPlus,
-    frame: Frame,
-    features: &[[f64; 3]],
-    (u, fitted): (Uncertainty, bool),
-    placements: usize,
-    touches: usize,
-) {
-    let n = problem.arm().encoders();
-    let count = placements * touches * features.len();
-    let q = angles(rng, n * count);
-    let warmth_k = warmth(rng, n * count);
-    let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
-    let feature: Vec<usize> = (0..count).map(|i| i % features.len()).collect();
-    let placement: Vec<i64> = (0..count).map(|i| (i / features.len() % placements) as i64).collect();
-    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
-    let rows = TouchRows { poses, probe: &probe, feature: &feature, placement: &placement };
-    let labels: Vec<String> = (1..=features.len()).map(|k| format!("f{k}")).collect();
-    let features = Features { name: "artefact", labels: &labels, coordinates_mm: features, u, fitted, frame };
-    problem.add_points(&features, rows).unwrap();
-}
-
-/// Touches all around two places of a ball a little smaller than the arm's reach.
-fn ball(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, fitted: bool, side: Side) {
-    let diameter_mm = 1.2 * problem.arm().reach_mm(0);
-    let ball = BallArtefact { name: "ball", diameter_mm, u_mm: 0.0, fitted, side, balls_mm: &[6.0, 6.0] };
-    touched(problem, rng, 2, 21, |problem, rows| problem.add_sphere(&ball, rows));
-}
-
-fn flat(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, balls_mm: [f64; 2]) {
-    touched(problem, rng, 3, 14, |problem, rows| problem.add_plane(&balls_mm, rows));
-}
-
-fn touched(
-    problem: &mut Problem,
-    rng: &mut Xoshiro256PlusPlus,
-    placements: usize,
-    touches: usize,
-    add: impl Fn(&mut Problem, TouchRows) -> ulna::Result<usize>,
-) {
-    let n = problem.arm().encoders();
-    let count = placements * touches;
-    let q = angles(rng, n * count);
-    let warmth_k = warmth(rng, count);
-    let probe: Vec<usize> = (0..count).map(|i| i % 2).collect();
-    let placement: Vec<i64> = (0..count).map(|i| (i % placements) as i64).collect();
-    let poses = Angles { q_rad: &q, warmth_k: &warmth_k };
-    let rows = TouchRows { poses, probe: &probe, feature: &vec![0; count], placement: &placement };
-    add(problem, rows).unwrap();
 }
 
 /// Tips by the plain map, mm.

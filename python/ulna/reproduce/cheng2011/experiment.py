@@ -76,8 +76,14 @@ def rerun_experiment(seed: int) -> Experiment:
     start = as_drawn(bent, rng, START_RAD, START_MM)
     bars_rad = _touch_bars(bent, BARS, seed, rng)
     problem = _core.Problem(start.core, noise, SEAT_MM)
-    length_mm = np.full(BARS, BAR_MM)
-    problem.add_lengths("bar", bars_rad[:, 0].copy(), bars_rad[:, 1].copy(), np.zeros(BARS, np.int64), length_mm)
+    problem.add(
+        "length",
+        "bar",
+        q_rad=bars_rad[:, 0].copy(),
+        p_rad=bars_rad[:, 1].copy(),
+        probe=np.zeros(BARS, np.int64),
+        measured_mm=np.full(BARS, BAR_MM),
+    )
     fitted = _core.fit(problem, np.zeros(len(start.parameters), dtype=bool))
     calibrated = start.with_parameters(fitted.parameters)
 
@@ -159,7 +165,8 @@ def _straight_probe(calibrated: Arm, truth: Arm, seed: int, rng: np.random.Gener
     q_rad = of.touch(np.repeat(seat_mm, SEAT_POSES, axis=0), seed, rng)
     problem = _core.Problem(start.core, np.full(truth.n, ENCODER_RAD), SEAT_MM)
     none = np.zeros(SEAT_POSES, dtype=np.int64)
-    problem.add_points("cone", np.zeros((1, 3)), "free", q_rad, none, none, none)
+    cone_mm = np.zeros((1, 3))
+    problem.add("points", "cone", features_mm=cone_mm, q_rad=q_rad, probe=none, feature=none, placement=none)
     hold = np.array([not name.startswith("probe.") for name in start.parameter_names])
     fitted = _core.fit(problem, hold)
     x, y, z = fitted.parameters[-3:]

@@ -54,7 +54,8 @@ def length_problem(start: Arm, truth: Arm, rng: np.random.Generator, count: int 
     q_rad, p_rad = random_poses(truth, rng, count), random_poses(truth, rng, count)
     problem = _core.Problem(start.core)
     probe = np.zeros(count, dtype=np.int64)
-    problem.add_lengths("lengths", q_rad, p_rad, probe, lengths_between(truth, q_rad, p_rad))
+    lengths_mm = lengths_between(truth, q_rad, p_rad)
+    problem.add("length", "lengths", q_rad=q_rad, p_rad=p_rad, probe=probe, measured_mm=lengths_mm)
     return problem
 
 

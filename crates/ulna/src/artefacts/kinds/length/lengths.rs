@@ -7,6 +7,7 @@ use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
 use crate::artefacts::readings::Readings;
 use crate::artefacts::residuals::{Unweighted, Whitened};
+use crate::artefacts::stated::Rows;
 use crate::artefacts::writer::Writer;
 use crate::error::Result;
 use crate::kinematics::batch::scratch_len;
@@ -18,53 +19,45 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Rows of two poses and a length, in runs of one probe each.
 #[derive(Debug, Clone)]
-pub struct Lengths {
+pub(in crate::artefacts::kinds) struct Lengths {
     runs: Vec<Run>,
     /// the length, where it is not known exactly: what is added to that of every row
     dimensions: Vec<Dimension>,
+    /// whether all lengths are one, of which nothing is known
+    unknown: bool,
     rows: usize,
 }
 
-/// What one row of a file says.
-#[derive(Debug, Clone, Copy)]
-pub struct LengthRows<'a> {
-    /// Row-major angles of the first pose, rad.
-    pub q_rad: &'a [f64],
-    /// Row-major angles of the second pose, rad.
-    pub p_rad: &'a [f64],
-    /// How warm the arm was, as in [`Angles`].
-    pub warmth_k: &'a [f64],
-    /// Which probe took each row.
-    pub probe: &'a [usize],
-    /// Calibrated distance of each row, mm.
-    pub length_mm: &'a [f64],
-}
-
 impl Lengths {
-    /// Rows of an arm of `encoders` joints. `u_mm` is the standard uncertainty of the length, common to all rows; `fitted`:
-    /// it is an unknown of the fit within that.
-    pub fn new(name: &str, encoders: usize, data: LengthRows, u_mm: f64, fitted: bool) -> Lengths {
-        let probes = data.probe.iter().max().map_or(0, |&p| p + 1);
+    /// Rows of an arm of `encoders` joints, whose second poses and lengths must be there. `length`: what is not known of
+    /// all lengths together.
+    pub fn new(rows: &Rows, encoders: usize, length: Option<Dimension>) -> Lengths {
+        let (p_rad, length_mm) = (rows.p_rad.unwrap_or_default(), rows.measured_mm.unwrap_or_default());
+        let probes = rows.probe.iter().max().map_or(0, |&p| p + 1);
         let mut runs = Vec::new();
         for probe in 0..probes {
-            let rows: Vec<usize> = (0..data.probe.len()).filter(|&r| data.probe[r] == probe).collect();
-            if rows.is_empty() {
+            let own: Vec<usize> = (0..rows.probe.len()).filter(|&r| rows.probe[r] == probe).collect();
+            if own.is_empty() {
                 continue;
             }
-            let length: Vec<f64> = rows.iter().map(|&r| data.length_mm[r]).collect();
+            let lengths: Vec<f64> = own.iter().map(|&r| length_mm[r]).collect();
             runs.push(Run {
                 probe,
-                from: Poses::gathered(Angles { q_rad: data.q_rad, warmth_k: data.warmth_k }, encoders, &rows),
-                to: Poses::gathered(Angles { q_rad: data.p_rad, warmth_k: data.warmth_k }, encoders, &rows),
-                length_mm: Columns::from_rows(&length, 1),
-                weight: ones(rows.len()),
+                from: Poses::gathered(rows.poses, encoders, &own),
+                to: Poses::gathered(Angles { q_rad: p_rad, ..rows.poses }, encoders, &own),
+                length_mm: Columns::from_rows(&lengths, 1),
+                weight: ones(own.len()),
                 discounted: None,
-                rows,
+                rows: own,
             });
         }
-        let first_mm = data.length_mm.first().copied().unwrap_or(0.0);
-        let length = Dimension { name: format!("artefact.{name}.length"), value_mm: first_mm, u_mm, fitted };
-        Lengths { runs, dimensions: if u_mm > 0.0 { vec![length] } else { vec![] }, rows: data.probe.len() }
+        let free = |length: &Dimension| length.is_free() && length_mm.iter().all(|&each| each == length.value);
+        Lengths {
+            runs,
+            unknown: length.as_ref().is_some_and(free),
+            dimensions: length.into_iter().collect(),
+            rows: rows.probe.len(),
+        }
     }
 }
 
@@ -87,7 +80,11 @@ impl Readings for Lengths {
     }
 
     fn scale_free(&self) -> bool {
-        false
+        self.unknown
+    }
+
+    fn growing(&self, at: At) -> Vec<f64> {
+        at.dimensions.to_vec()
     }
 
     fn mirror_free(&self) -> bool {
@@ -224,9 +221,9 @@ impl Readings for Lengths {
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
         let mut drawn = self.clone();
         // the length is what it is; its calibration is drawn anew
-        let artefact_error = self.dimensions.first().map_or(0.0, |c| c.u_mm * normal(rng));
-        if let (Some(dimension), Some(&length)) = (drawn.dimensions.first_mut(), truth.dimensions_mm.first()) {
-            dimension.value_mm = length + artefact_error;
+        let artefact_error = self.dimensions.first().map_or(0.0, |c| c.u * normal(rng));
+        if let (Some(dimension), Some(&length)) = (drawn.dimensions.first_mut(), truth.dimensions.first()) {
+            dimension.value = length + artefact_error;
         }
         for run in &mut drawn.runs {
             let from = run.tips(truth.model, &run.from);
@@ -268,7 +265,7 @@ impl Readings for Lengths {
             run.rows = (next..next + run.rows.len()).collect();
             next += run.rows.len();
         }
-        Box::new(Lengths { runs, dimensions: self.dimensions.clone(), rows: next })
+        Box::new(Lengths { runs, dimensions: self.dimensions.clone(), unknown: self.unknown, rows: next })
     }
 
     fn boxed(&self) -> Box<dyn Readings> {
@@ -279,7 +276,7 @@ impl Readings for Lengths {
 impl Lengths {
     /// What the length's dimension adds to the length of every row.
     fn added_mm(&self, at: At) -> f64 {
-        let dimension = self.dimensions.first().zip(at.dimensions_mm.first());
-        dimension.map_or(0.0, |(dimension, value)| value - dimension.value_mm)
+        let dimension = self.dimensions.first().zip(at.dimensions.first());
+        dimension.map_or(0.0, |(dimension, value)| value - dimension.value)
     }
 }

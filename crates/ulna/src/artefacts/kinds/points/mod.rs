@@ -7,12 +7,13 @@
 //! A seat is an artefact of one feature, a bar of two. With `frame = "arm"` R and t are known (none).
 
 mod features;
+mod lengths;
+mod observed;
 mod placement;
-mod readings;
-mod rows;
+mod scene;
+mod stated;
 mod touched;
 mod weigh;
 mod whitening;
 
-pub use features::{Features, Frame, Uncertainty};
-pub use touched::Points;
+pub(super) use stated::KIND;

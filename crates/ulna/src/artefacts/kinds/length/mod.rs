@@ -7,5 +7,7 @@
 mod kernels;
 mod lengths;
 mod run;
+mod stated;
 
-pub use lengths::{LengthRows, Lengths};
+pub(super) use lengths::Lengths;
+pub(super) use stated::KIND;

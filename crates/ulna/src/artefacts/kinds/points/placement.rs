@@ -82,7 +82,7 @@ impl Placement {
         let mut right = DVector::zeros(n);
         for touch in touches {
             let residual = touch.whiten * touch.residual(pose);
-            let columns = Matrix3xX::from_columns(&self.derivatives(pose, touch));
+            let columns = Matrix3xX::from_columns(&self.derivatives(pose, touch).collect::<Vec<_>>());
             normal += columns.transpose() * &columns;
             right += columns.transpose() * residual;
         }
@@ -131,30 +131,17 @@ impl Placement {
         Isometry3::from_parts((anchor - rotation * self.anchor).into(), rotation)
     }
 
-    /// Degrees of freedom that each touch has left when the placement follows it: 3 less its leverage.
-    pub fn freedoms(&self, pose: &Isometry3<f64>, touches: &[Touch]) -> Vec<f64> {
-        let columns: Vec<Matrix3xX<f64>> =
-            touches.iter().map(|touch| Matrix3xX::from_columns(&self.derivatives(pose, touch))).collect();
-        let mut rows = DMatrix::zeros(3 * touches.len(), self.unknowns());
-        for (i, own) in columns.iter().enumerate() {
-            rows.rows_mut(3 * i, 3).copy_from(own);
-        }
-        // turns move features by their distance, shifts by one: alike in size for the factorization
-        for mut column in rows.column_iter_mut() {
-            let norm = column.norm();
-            column /= if norm > 0.0 { norm } else { 1.0 };
-        }
-        let q = rows.qr().q();
-        let left = |i: usize| (3.0 - q.rows(3 * i, 3).norm_squared()).max(0.0);
-        (0..touches.len()).map(left).collect()
-    }
-
     /// Derivatives of the whitened residual with respect to the placement's unknowns.
-    pub fn derivatives(&self, pose: &Isometry3<f64>, touch: &Touch) -> Vec<Vector3<f64>> {
-        let shifts = (0..3).map(|j| -touch.whiten.column(j));
+    pub fn derivatives<'a>(
+        &'a self,
+        pose: &Isometry3<f64>,
+        touch: &Touch,
+    ) -> impl Iterator<Item = Vector3<f64>> + use<'a> {
+        let (pose, touch) = (*pose, *touch);
+        let shifts = (0..3).map(move |j| -touch.whiten.column(j));
         let arm = touch.feature_mm - self.anchor;
-        let turns = self.axes.iter().map(|axis| -touch.whiten * (pose.rotation * axis.cross(&arm)));
-        shifts.chain(turns).collect()
+        let turns = self.axes.iter().map(move |axis| -touch.whiten * (pose.rotation * axis.cross(&arm)));
+        shifts.chain(turns)
     }
 }
 

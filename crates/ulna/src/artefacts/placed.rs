@@ -1,0 +1,325 @@
+//! Readings of artefacts that stand somewhere: what all of them do alike, whatever is read of a touch.
+
+use super::dimension::{Dimension, Unknowns};
+use super::model::At;
+use super::noise::{Noise, Weighing, normal};
+use super::readings::Readings;
+use super::residuals::{Unweighted, Whitened, shared};
+use super::rows::{Eliminated, Layout, MOST_OWN, Place};
+use super::tile::{Directions, TILE, Tile};
+use super::touches::Touches;
+use super::writer::Writer;
+use crate::error::Result;
+use crate::kinematics::Sample;
+use nalgebra::{DMatrix, Vector3};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Touches of one artefact, and what of it is not known exactly.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    pub touches: Touches,
+    pub dimensions: Vec<Dimension>,
+}
+
+/// What is read of a touch: one number or three.
+pub(super) trait Observed: std::fmt::Debug + Clone + Send + Sync + 'static {
+    /// Equations of a reading.
+    const COMPONENTS: usize;
+
+    /// All touches as they are seen from some parameters.
+    type Scene<'a>: Scene;
+
+    /// Puts every standing where it fits best.
+    fn scene<'a>(&'a self, group: &'a Group, at: At<'a>) -> Self::Scene<'a>;
+
+    /// Unknowns of a standing that its touches can show.
+    fn placement_unknowns(&self, group: &Group, standing: usize) -> usize;
+
+    /// See [`Readings::scale_free`].
+    fn scale_free(&self, group: &Group) -> bool;
+
+    /// See [`Readings::growing`].
+    fn growing(&self, group: &Group, at: At) -> Vec<f64>;
+
+    /// See [`Readings::mirror_free`].
+    fn mirror_free(&self) -> bool;
+
+    /// See [`Readings::weigh`].
+    fn weigh(&mut self, group: &Group, at: At, noise: Option<&Noise>, how: Weighing);
+
+    /// See [`Readings::discount`]; one factor for each touch in their order.
+    fn discount(&mut self, factors: Option<Vec<f64>>);
+
+    /// Root of the weight of a touch, equal in effect where it differs by direction, 1/mm.
+    fn weight(&self, row: usize) -> f64;
+
+    /// Variance of a touch that is neither the seat's nor the encoders', mm².
+    fn of_its_own(&self, _: &Group, _: usize) -> f64 {
+        0.0
+    }
+
+    /// Takes dimensions that were calibrated anew: `group` has those that they were before.
+    fn recalibrate(&mut self, _: &Group, _truth: &[f64], _calibrated: &[f64]) {}
+
+    /// The same for some of the touches, which are now those of `touches`.
+    fn picked(&self, touches: &Touches, rows: &[usize]) -> Self;
+
+    /// See [`Readings::as_lengths`].
+    fn as_lengths(&self, _: &Group) -> Option<Box<dyn Readings>> {
+        None
+    }
+
+    /// See [`Readings::lengths_alone`].
+    fn lengths_alone(&self, _: &Group) -> Option<Box<dyn Readings>> {
+        None
+    }
+}
+
+/// Touches where the arm and the artefact are. Of the three numbers of an equation as many count as a reading has.
+pub(super) trait Scene {
+    /// Along which directions the derivatives are asked for.
+    type Directions<'b>: Directions
+    where
+        Self: 'b;
+
+    /// The weighed directions of the residuals.
+    fn directions(&self) -> Self::Directions<'_>;
+
+    /// The same standings, looked at without what a loss made of the weights.
+    fn undiscounted(self) -> Self;
+
+    /// Unknowns of a standing: columns of its own.
+    fn unknowns(&self, standing: usize) -> usize;
+
+    /// How far the tip is off, base frame, mm.
+    fn off_mm(&self, standing: usize, row: usize) -> Vector3<f64>;
+
+    /// A residual as a person reads it, mm.
+    fn residual_mm(&self, standing: usize, row: usize) -> [f64; 3];
+
+    /// A weighed residual.
+    fn residual(&self, standing: usize, row: usize) -> [f64; 3];
+
+    /// Its derivative with respect to a dimension.
+    fn by_dimension(&self, standing: usize, row: usize, dimension: usize) -> [f64; 3];
+
+    /// Its derivatives with respect to the standing's unknowns.
+    fn by_standing(&self, standing: usize, row: usize, own: &mut [[f64; 3]; MOST_OWN]);
+}
+
+/// Readings of one artefact.
+#[derive(Debug, Clone)]
+pub(super) struct Placed<K> {
+    pub group: Group,
+    pub kind: K,
+}
+
+impl<K: Observed> Placed<K> {
+    /// Numbers of each touch, in the order that the file has them.
+    fn filed(&self, scene: &K::Scene<'_>, each: impl Fn(&K::Scene<'_>, usize, usize) -> f64) -> Vec<f64> {
+        let of_standing = |(standing, rows): (usize, &std::ops::Range<usize>)| {
+            rows.clone().map(|row| each(scene, standing, row)).collect::<Vec<_>>()
+        };
+        let touches = &self.group.touches;
+        touches.filed(touches.standings.iter().enumerate().flat_map(of_standing))
+    }
+}
+
+impl<K: Observed> Readings for Placed<K> {
+    fn len(&self) -> usize {
+        self.group.touches.len()
+    }
+
+    fn equations(&self) -> usize {
+        K::COMPONENTS * self.len()
+    }
+
+    fn placement_unknowns(&self) -> usize {
+        (0..self.group.touches.standings.len()).map(|k| self.kind.placement_unknowns(&self.group, k)).sum()
+    }
+
+    fn scale_free(&self) -> bool {
+        self.kind.scale_free(&self.group)
+    }
+
+    fn growing(&self, at: At) -> Vec<f64> {
+        self.kind.growing(&self.group, at)
+    }
+
+    fn mirror_free(&self) -> bool {
+        self.kind.mirror_free()
+    }
+
+    fn probes_used(&self, probes: usize) -> Vec<bool> {
+        self.group.touches.probes_used(probes)
+    }
+
+    fn dimensions(&self) -> &[Dimension] {
+        &self.group.dimensions
+    }
+
+    fn sin_cos_bytes(&self) -> usize {
+        self.group.touches.sin_cos_bytes()
+    }
+
+    fn keep_sin_cos(&mut self) {
+        self.group.touches.poses.keep_sin_cos();
+    }
+
+    fn weigh(&mut self, at: At, noise: Option<&Noise>, how: Weighing) {
+        self.kind.discount(None);
+        self.kind.weigh(&self.group, at, noise, how);
+    }
+
+    fn discount(&mut self, factors: Option<&[f64]>) {
+        let order = &self.group.touches.order;
+        self.kind.discount(factors.map(|factors| order.iter().map(|&row| factors[row]).collect()));
+    }
+
+    fn weight_squared_sum(&self) -> f64 {
+        (0..self.len()).map(|row| self.kind.weight(row).powi(2)).sum()
+    }
+
+    fn stream(&self, at: At, unknowns: &Unknowns, jacobian: bool, out: &mut Writer) -> Result<()> {
+        let touches = &self.group.touches;
+        let layout = Layout::new(at.model, self.group.dimensions.len());
+        out.layout(layout.residual, layout.targets(unknowns).filter(|_| jacobian))?;
+        let scene = self.kind.scene(&self.group, at);
+        let directions = jacobian.then(|| scene.directions());
+        let mut tile = Tile::new(touches, at.model, K::COMPONENTS);
+        let mut eliminated = Eliminated::default();
+        let mut standing = 0;
+        for start in (0..touches.len()).step_by(TILE) {
+            let end = touches.len().min(start + TILE);
+            if let Some(directions) = &directions {
+                tile.fill(touches, &at.model.chain, directions, start, &mut out.scratch[0]);
+            }
+            let mut row = start;
+            while row < end {
+                let whole = &touches.standings[standing];
+                let rows = row..end.min(whole.end);
+                let place = Place::reserve(out, &tile, start, rows.clone(), &touches.probe, K::COMPONENTS)?;
+                let block = &mut out.block;
+                place.write(block, layout.residual, |row| scene.residual(standing, row));
+                if jacobian {
+                    place.write_parameters(block, at.model, layout);
+                    for target in 0..block.targets.len() {
+                        let (column, _) = block.targets[target];
+                        if column >= layout.dimensions {
+                            let dimension = column - layout.dimensions;
+                            place.write(block, column, |row| scene.by_dimension(standing, row, dimension));
+                        }
+                    }
+                    let own = scene.unknowns(standing);
+                    if own > 0 {
+                        if row == whole.start {
+                            eliminated.begin(own, block);
+                        }
+                        place.write_own(block, own, |row, own| scene.by_standing(standing, row, own));
+                        eliminated.fold(block, place.used);
+                    }
+                }
+                row = rows.end;
+                standing += usize::from(row == whole.end);
+            }
+        }
+        out.flush()
+    }
+
+    fn unweighted(&self, at: At) -> Unweighted {
+        let scene = self.kind.scene(&self.group, at);
+        let touches = &self.group.touches;
+        let mut residuals_mm = vec![0.0; self.equations()];
+        for (standing, rows) in touches.standings.iter().enumerate() {
+            for row in rows.clone() {
+                let first = K::COMPONENTS * touches.order[row];
+                let residual = scene.residual_mm(standing, row);
+                residuals_mm[first..first + K::COMPONENTS].copy_from_slice(&residual[..K::COMPONENTS]);
+            }
+        }
+        let weights = self.filed(&scene, |_, _, row| self.kind.weight(row));
+        Unweighted { components: K::COMPONENTS, residuals_mm, weights }
+    }
+
+    fn whitened(&self, at: At) -> Whitened {
+        let scene = self.kind.scene(&self.group, at).undiscounted();
+        let touches = &self.group.touches;
+        let (mut norms, mut freedoms) = (Vec::with_capacity(self.len()), Vec::with_capacity(self.len()));
+        for (standing, rows) in touches.standings.iter().enumerate() {
+            norms.extend(rows.clone().map(|row| Vector3::from(scene.residual(standing, row)).norm()));
+            freedoms.extend(left_of::<K>(&scene, standing, rows.clone()));
+            if scene.unknowns(standing) > 0 {
+                shared(&mut norms[rows.clone()], &mut freedoms[rows.clone()], K::COMPONENTS);
+            }
+        }
+        let filed = |values: Vec<f64>| touches.filed(values.into_iter());
+        Whitened { norms: filed(norms), freedoms: filed(freedoms) }
+    }
+
+    fn samples(&self, most: usize) -> Vec<Sample> {
+        self.group.touches.samples(most)
+    }
+
+    fn warmth_range_k(&self) -> Option<(f64, f64)> {
+        self.group.touches.poses.warmth_range_k()
+    }
+
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        let mut drawn = self.clone();
+        // the artefact is what it is; its calibration is drawn anew
+        let stated = self.group.dimensions.iter().zip(truth.dimensions);
+        let calibrated: Vec<f64> = stated.map(|(dimension, value)| value + dimension.u * normal(rng)).collect();
+        drawn.kind.recalibrate(&self.group, truth.dimensions, &calibrated);
+        drawn.group.dimensions.iter_mut().zip(calibrated).for_each(|(dimension, value)| dimension.value = value);
+        let scene = self.kind.scene(&self.group, truth);
+        let mut off = Vec::with_capacity(self.len());
+        for (standing, rows) in self.group.touches.standings.iter().enumerate() {
+            off.extend(rows.clone().map(|row| {
+                let variance = noise.seat_mm.powi(2) + self.kind.of_its_own(&self.group, row);
+                (scene.off_mm(standing, row), variance.sqrt())
+            }));
+        }
+        drawn.group.touches.redraw(off.into_iter(), &noise.encoder_rad, rng);
+        Box::new(drawn)
+    }
+
+    fn thinned(&self, most: usize) -> Box<dyn Readings> {
+        let (touches, picked) = self.group.touches.thinned(most);
+        let kind = self.kind.picked(&touches, &picked);
+        Box::new(Placed { group: Group { touches, dimensions: self.group.dimensions.clone() }, kind })
+    }
+
+    fn as_lengths(&self) -> Option<Box<dyn Readings>> {
+        self.kind.as_lengths(&self.group)
+    }
+
+    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
+        self.kind.lengths_alone(&self.group)
+    }
+
+    fn boxed(&self) -> Box<dyn Readings> {
+        Box::new(self.clone())
+    }
+}
+
+/// Degrees of freedom that each touch of a standing has left when the placement follows it: its equations less its leverage.
+fn left_of<K: Observed>(scene: &K::Scene<'_>, standing: usize, rows: std::ops::Range<usize>) -> Vec<f64> {
+    let (count, components) = (rows.len(), K::COMPONENTS);
+    let unknowns = scene.unknowns(standing).min(components * count);
+    let mut own = DMatrix::zeros(components * count, unknowns);
+    for (i, row) in rows.enumerate() {
+        let mut derivatives = [[0.0; 3]; MOST_OWN];
+        scene.by_standing(standing, row, &mut derivatives);
+        for (k, derivative) in derivatives.iter().enumerate().take(unknowns) {
+            (0..components).for_each(|c| own[(components * i + c, k)] = derivative[c]);
+        }
+    }
+    // turns move touches by their distance, shifts by one: alike in size for the factorization
+    for mut column in own.column_iter_mut() {
+        let norm = column.norm();
+        column /= if norm > 0.0 { norm } else { 1.0 };
+    }
+    let q = own.qr().q();
+    let left = |i: usize| (components as f64 - q.rows(components * i, components).norm_squared()).max(0.0);
+    (0..count).map(left).collect()
+}

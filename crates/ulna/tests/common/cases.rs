@@ -1,0 +1,159 @@
+//! Readings of every kind of artefact, not consistent with anything: residuals of tens of millimetres, as at a start.
+//!
+//! A new kind gets a case here, or the contract fails and says so.
+
+use super::{angles, warmth};
+use rand::RngExt;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use ulna::artefacts::{Frame, Rows, Size, Stated};
+use ulna::kinematics::Angles;
+use ulna::problem::Problem;
+
+/// An artefact and its readings.
+pub struct Case {
+    pub label: &'static str,
+    /// its kind, as the registry calls it
+    pub kind: &'static str,
+    pub add: fn(&mut Problem, &mut Xoshiro256PlusPlus, &'static str),
+}
+
+const BAR: &[[f64; 3]] = &[[0.0; 3], [443.0, 0.0, 0.0]];
+const PLATE: &[[f64; 3]] = &[[0.0; 3], [100.0, 0.0, 0.0], [0.0, 150.0, 0.0], [80.0, 90.0, 5.0]];
+const IN_LINE: &[[f64; 3]] = &[[0.0; 3], [60.0, 0.0, 0.0], [120.0, 0.0, 0.0], [240.0, 0.0, 0.0], [420.0, 0.0, 0.0]];
+
+pub const CASES: &[Case] = &[
+    Case { label: "pairs of poses", kind: "length", add: |p, r, k| lengths(p, r, k, &[]) },
+    Case {
+        label: "pairs of poses whose length may change",
+        kind: "length",
+        add: |p, r, k| lengths(p, r, k, &[size("length", 443.0, 0.5, true)]),
+    },
+    Case {
+        label: "pairs of poses an unknown length apart",
+        kind: "length",
+        add: |p, r, k| lengths(p, r, k, &[size("length", 443.0, 0.0, true)]),
+    },
+    Case { label: "bar touched once", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (30, 1)) },
+    Case { label: "bar touched often", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (3, 13)) },
+    Case {
+        label: "bar whose length may change",
+        kind: "points",
+        add: |p, r, k| {
+            let dimensions = &[size("length", 443.0, 0.5, true)];
+            touched(p, r, k, &Stated { dimensions, ..points(BAR) }, (12, 2));
+        },
+    },
+    Case {
+        label: "bar of unknown length",
+        kind: "points",
+        add: |p, r, k| {
+            let dimensions = &[size("length", 443.0, 0.0, true)];
+            touched(p, r, k, &Stated { dimensions, ..points(BAR) }, (12, 2));
+        },
+    },
+    Case { label: "seat", kind: "points", add: |p, r, k| touched(p, r, k, &points(&[[0.0; 3]]), (2, 45)) },
+    Case { label: "plate", kind: "points", add: |p, r, k| touched(p, r, k, &points(PLATE), (3, 4)) },
+    Case {
+        label: "plate whose features may move",
+        kind: "points",
+        add: |p, r, k| {
+            let stated = Stated { feature_u_mm: Some(&[0.4, 0.0, 0.3, 0.2]), features_fitted: true, ..points(PLATE) };
+            touched(p, r, k, &stated, (3, 4));
+        },
+    },
+    Case {
+        label: "coordinates",
+        kind: "points",
+        add: |p, r, k| {
+            let grid = [[300.0, 0.0, 100.0], [0.0, 400.0, 200.0], [-300.0, 200.0, 0.0]];
+            touched(p, r, k, &Stated { frame: Some(Frame::Arm), ..points(&grid) }, (1, 12));
+        },
+    },
+    Case {
+        label: "ball bar of many balls in line",
+        kind: "points",
+        add: |p, r, k| touched(p, r, k, &points(IN_LINE), (3, 6)),
+    },
+    Case { label: "ball", kind: "sphere", add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false) },
+    Case {
+        label: "ball of a diameter that may change",
+        kind: "sphere",
+        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.01, true), false),
+    },
+    Case {
+        label: "ball of unknown diameter",
+        kind: "sphere",
+        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false),
+    },
+    Case {
+        label: "hollow sphere",
+        kind: "sphere",
+        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), true),
+    },
+    Case { label: "flat", kind: "plane", add: |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14)) },
+    Case {
+        label: "flat touched with two balls",
+        kind: "plane",
+        add: |p, r, k| touched(p, r, k, &balls(&[6.0, 40.0]), (3, 14)),
+    },
+];
+
+fn size(name: &str, value: f64, u: f64, fitted: bool) -> Size<'_> {
+    Size { name, value, u, fitted }
+}
+
+fn points(features_mm: &[[f64; 3]]) -> Stated<'_> {
+    Stated { name: "artefact", features_mm: Some(features_mm), ..Stated::default() }
+}
+
+fn balls(balls_mm: &[f64]) -> Stated<'_> {
+    Stated { name: "artefact", balls_mm: Some(balls_mm), ..Stated::default() }
+}
+
+fn lengths(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, dimensions: &[Size]) {
+    let (n, count) = (problem.arm().encoders(), 45);
+    let (q, p) = (angles(rng, n * count), angles(rng, n * count));
+    let warmth_k = warmth(rng, count);
+    let unlike: Vec<f64> = (0..count).map(|_| rng.random_range(100.0..900.0)).collect();
+    let alike = dimensions.first().map(|length| vec![length.value; count]);
+    let rows = Rows {
+        poses: Angles { q_rad: &q, warmth_k: &warmth_k },
+        probe: &(0..count).map(|i| i % 2).collect::<Vec<_>>(),
+        p_rad: Some(&p),
+        measured_mm: Some(&alike.unwrap_or(unlike)),
+        ..Rows::default()
+    };
+    problem.add(kind, &Stated { name: "pairs", dimensions, ..Stated::default() }, &rows).unwrap();
+}
+
+/// Touches all around places of something round, its diameter in reaches of the arm.
+fn round(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, diameter: Size, inside: bool) {
+    let reach_mm = problem.arm().reach_mm(0);
+    let dimensions = &[Size { value: diameter.value * reach_mm, u: diameter.u * reach_mm, ..diameter }];
+    touched(problem, rng, kind, &Stated { dimensions, inside, ..balls(&[6.0, 6.0]) }, (2, 21));
+}
+
+/// Touches of so many standings, each feature so often.
+fn touched(
+    problem: &mut Problem,
+    rng: &mut Xoshiro256PlusPlus,
+    kind: &str,
+    stated: &Stated,
+    (placements, touches): (usize, usize),
+) {
+    let features = stated.features_mm.map(<[_]>::len);
+    let (n, each) = (problem.arm().encoders(), features.unwrap_or(1));
+    let count = placements * touches * each;
+    let q = angles(rng, n * count);
+    let warmth_k = warmth(rng, n * count);
+    let feature: Vec<usize> = (0..count).map(|i| i % each).collect();
+    let placement: Vec<i64> = (0..count).map(|i| (i / each % placements) as i64).collect();
+    let rows = Rows {
+        poses: Angles { q_rad: &q, warmth_k: &warmth_k },
+        probe: &(0..count).map(|i| i % 2).collect::<Vec<_>>(),
+        feature: features.map(|_| &feature[..]),
+        placement: Some(&placement),
+        ..Rows::default()
+    };
+    problem.add(kind, stated, &rows).unwrap();
+}

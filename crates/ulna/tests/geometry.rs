@@ -1,0 +1,153 @@
+//! Least-squares figures against NIST's reference pairs, and against the figure that the points were made from.
+//!
+//! `data/nist_*.txt` are 30 pairs each of points and least-squares fits, those that NIST gives away for self-checking of
+//! the Algorithm Testing System (ASME B89.4.10), a work of the US government: one line of a name, the number of points and
+//! the reference fit, then the points. A sphere's fit is centre and diameter; a plane's a point and the normal; a
+//! cylinder's a point of the axis, its direction and the diameter.
+
+use nalgebra::Vector3;
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use ulna::geometry::plane::Plane;
+use ulna::geometry::{Contact, line, point};
+
+mod common;
+use common::rng;
+
+/// Name, points and reference fit of every pair.
+fn pairs(text: &str) -> Vec<(String, Vec<Contact>, Vec<f64>)> {
+    let mut lines = text.lines();
+    let mut pairs = Vec::new();
+    while let Some(head) = lines.next() {
+        let mut words = head.split_whitespace();
+        let name = words.next().unwrap().to_string();
+        let count: usize = words.next().unwrap().parse().unwrap();
+        let fit = words.map(|word| word.parse().unwrap()).collect();
+        let point = |line: &str| {
+            let xyz: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+            Contact { p_mm: Vector3::from_column_slice(&xyz), apart_mm: 0.0, weight: 1.0 }
+        };
+        pairs.push((name, lines.by_ref().take(count).map(point).collect(), fit));
+    }
+    assert_eq!(pairs.len(), 30);
+    pairs
+}
+
+/// Coordinates are up to a metre: reference values agree with ours in all the digits that doubles have of them.
+const OF_REFERENCE_MM: f64 = 1e-12;
+const OF_REFERENCE_RAD: f64 = 1e-12;
+
+#[test]
+fn spheres_are_those_of_nist() {
+    for (name, points, fit) in pairs(include_str!("data/nist_sphere.txt")) {
+        let found = point::sphere(&points).unwrap();
+        let off = (found.at_mm - Vector3::from_column_slice(&fit[..3])).norm();
+        let wider = (2.0 * found.radius_mm - fit[3]).abs();
+        assert!(off < OF_REFERENCE_MM && wider < OF_REFERENCE_MM, "{name}: {off:e} mm, {wider:e} mm");
+    }
+}
+
+#[test]
+fn planes_are_those_of_nist() {
+    for (name, points, fit) in pairs(include_str!("data/nist_plane.txt")) {
+        let found = Plane::at_known_distances(&points);
+        let (on, normal) = (Vector3::from_column_slice(&fit[..3]), Vector3::from_column_slice(&fit[3..6]));
+        let off = (found.normal.dot(&(on - found.middle_mm)) - found.offset_mm).abs();
+        let tilt = found.normal.cross(&normal).norm();
+        assert!(off < OF_REFERENCE_MM && tilt < OF_REFERENCE_RAD, "{name}: {off:e} mm, {tilt:e} rad");
+    }
+}
+
+#[test]
+fn cylinders_are_those_of_nist() {
+    for (name, points, fit) in pairs(include_str!("data/nist_cylinder.txt")) {
+        let found = line::cylinder(&points).unwrap();
+        let (on, along) = (Vector3::from_column_slice(&fit[..3]), Vector3::from_column_slice(&fit[3..6]));
+        let arm = on - found.foot_mm;
+        let off = (arm - found.direction * found.direction.dot(&arm)).norm();
+        let tilt = found.direction.cross(&along).norm();
+        let wider = (2.0 * found.radius_mm - fit[6]).abs();
+        let good = off < OF_REFERENCE_MM && wider < OF_REFERENCE_MM && tilt < OF_REFERENCE_RAD;
+        assert!(good, "{name}: {off:e} mm, {tilt:e} rad, {wider:e} mm");
+    }
+}
+
+fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
+    StandardNormal.sample(rng)
+}
+
+fn direction(rng: &mut Xoshiro256PlusPlus) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| normal(rng)).normalize()
+}
+
+/// A cylinder, and touches of a part of it: how far round, how long, how many, how noisy, all as it comes.
+fn touched(rng: &mut Xoshiro256PlusPlus, fewest: usize) -> (line::Axis, Vec<Contact>) {
+    let along = direction(rng);
+    let first = along.cross(&direction(rng)).normalize();
+    let axis = line::Axis {
+        foot_mm: Vector3::from_fn(|_, _| rng.random_range(-800.0..800.0)),
+        direction: along,
+        across: [first, along.cross(&first)],
+        radius_mm: 0.0,
+    };
+    let radius = 10.0_f64.powf(rng.random_range(0.7..2.0));
+    let (arc, length) = (rng.random_range(1.5..6.3), radius * 10.0_f64.powf(rng.random_range(-0.2..1.2)));
+    let noise = radius * 10.0_f64.powf(rng.random_range(-4.0..-2.0));
+    let ball = rng.random_range(1.0..4.0) * if rng.random::<bool>() { 1.0 } else { -0.5 };
+    let touch = |rng: &mut Xoshiro256PlusPlus| {
+        let (turn, height) = (rng.random_range(0.0..arc), rng.random_range(0.0..length));
+        let (sin, cos) = f64::sin_cos(turn);
+        let apart_mm = radius + ball;
+        let out = axis.across[0] * cos + axis.across[1] * sin;
+        let p_mm = axis.foot_mm + along * height + out * (apart_mm + noise * normal(rng));
+        Contact { p_mm, apart_mm, weight: rng.random_range(50.0..150.0) }
+    };
+    let count = rng.random_range(fewest..40);
+    let contacts = (0..count).map(|_| touch(rng)).collect();
+    (axis, contacts)
+}
+
+fn cost(contacts: &[Contact], residual: impl Fn(&Contact) -> f64) -> f64 {
+    contacts.iter().map(|contact| (contact.weight * residual(contact)).powi(2)).sum()
+}
+
+#[test]
+fn no_line_is_better_than_the_one_found() {
+    let mut rng = rng(5);
+    for number in 0..3000 {
+        let (truth, contacts) = touched(&mut rng, 9);
+        let found = line::at_known_distances(&contacts);
+        let (best, own) = (cost(&contacts, |c| found.residual(c).0), cost(&contacts, |c| truth.residual(c).0));
+        assert!(best <= own * (1.0 + 1e-9), "{number}: {} touches, {best:e} against {own:e}", contacts.len());
+    }
+}
+
+#[test]
+fn no_cylinder_is_better_than_the_one_found() {
+    let mut rng = rng(6);
+    for number in 0..3000 {
+        let (truth, contacts) = touched(&mut rng, 10);
+        let found = line::cylinder(&contacts).unwrap();
+        let (best, own) = (cost(&contacts, |c| found.residual(c).0), cost(&contacts, |c| truth.residual(c).0));
+        assert!(best <= own * (1.0 + 1e-9), "{number}: {} touches, {best:e} against {own:e}", contacts.len());
+    }
+}
+
+#[test]
+fn a_line_has_no_slope_where_it_is_found() {
+    let mut rng = rng(7);
+    for _ in 0..300 {
+        let (_, contacts) = touched(&mut rng, 9);
+        let found = line::at_known_distances(&contacts);
+        let mut slopes = [[0.0, 0.0]; 4];
+        for contact in &contacts {
+            let (residual, normal, along) = found.residual(contact);
+            for (slope, own) in slopes.iter_mut().zip(found.derivatives(&normal, along)) {
+                let (own, residual) = (contact.weight * own, contact.weight * residual);
+                *slope = [slope[0] + own * residual, slope[1] + (own * residual).abs()];
+            }
+        }
+        assert!(slopes.iter().all(|[sum, size]| sum.abs() < 1e-9 * size), "{slopes:?}");
+    }
+}
