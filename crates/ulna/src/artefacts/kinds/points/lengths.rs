@@ -1,7 +1,6 @@
 //! Touches of features told as lengths between pairs of them.
 
 use super::touched::Points;
-use crate::artefacts::dimension::Dimension;
 use crate::artefacts::kinds::length::Lengths;
 use crate::artefacts::placed::Group;
 use crate::artefacts::readings::Readings;
@@ -18,31 +17,11 @@ pub(super) fn pairs(points: &Points, group: &Group) -> Option<Box<dyn Readings>>
     if !told || pairs.is_empty() {
         return None;
     }
-    Some(Box::new(between(points, touches, &pairs, None)))
-}
-
-/// See [`Readings::lengths_alone`].
-pub(super) fn alone(points: &Points, group: &Group) -> Option<Box<dyn Readings>> {
-    let touches = &group.touches;
-    let (feature, probe, poses) = (&touches.feature, &touches.probe, &touches.poses);
-    let a_bar = |rows: &Range<usize>| {
-        let (a, b) = (rows.start, rows.start + 1);
-        let warm = |row: usize| poses.sample(row, 0).warmth_k;
-        rows.len() == 2 && feature[a] != feature[b] && probe[a] == probe[b] && warm(a) == warm(b)
-    };
-    let two_features = points.frame == Frame::Free && points.features_mm.len() == 2;
-    // what is not known of two features is their distance, or there is more to tell than that
-    let known = points.of_its_own.iter().all(|&variance| variance == 0.0) && group.dimensions.len() <= 1;
-    let apart = points.placements.iter().all(|placement| placement.span > 0);
-    if !(two_features && known && apart && touches.standings.iter().all(a_bar)) {
-        return None;
-    }
-    let pairs: Vec<(usize, usize)> = touches.standings.iter().map(|rows| (rows.start, rows.start + 1)).collect();
-    Some(Box::new(between(points, touches, &pairs, group.dimensions.first().cloned())))
+    Some(Box::new(between(points, touches, &pairs)))
 }
 
 /// Pairs of touches as lengths between them.
-fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)], length: Option<Dimension>) -> Lengths {
+fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)]) -> Lengths {
     let (mut q_rad, mut p_rad, mut warmth_k) = (vec![], vec![], vec![]);
     for &(from, to) in pairs {
         let (first, second) = (touches.poses.sample(from, 0), touches.poses.sample(to, 0));
@@ -58,7 +37,7 @@ fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)], length:
         measured_mm: Some(&pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect::<Vec<_>>()),
         ..Rows::default()
     };
-    Lengths::new(&rows, touches.poses.encoders(), length)
+    Lengths::new(&rows, touches.poses.encoders(), None)
 }
 
 /// Touches of one standing in pairs at different features, with one probe each: every touch with three others at most,

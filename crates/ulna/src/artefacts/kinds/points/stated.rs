@@ -1,10 +1,14 @@
 //! The kind, and what only it knows of its statement.
 
+use super::bars::Bars;
 use super::features::Unknown;
 use super::touched::Points;
 use crate::artefacts::kind::{Asked, Kind, Statement};
+use crate::artefacts::kinds::length::Lengths;
+use crate::artefacts::parts::{Part, Parts};
 use crate::artefacts::placed::{Group, Placed};
 use crate::artefacts::readings::Readings;
+use crate::artefacts::standings::Standings;
 use crate::artefacts::stated::{Column, Frame, Rows};
 use crate::artefacts::touches::Touches;
 use crate::error::Result;
@@ -29,10 +33,56 @@ fn readings(statement: &Statement) -> Result<Box<dyn Readings>> {
     };
     let features_mm: Vec<Vector3<f64>> =
         statement.stated.features_mm.unwrap_or_default().iter().map(|&at| at.into()).collect();
-    let touches = Touches::new(&rows, statement.arm.encoders());
     let mut counts = vec![0; features_mm.len()];
-    touches.feature.iter().for_each(|&feature| counts[feature] += 1);
-    let Unknown { dimensions, moves, of_its_own } = Unknown::new(statement, &features_mm, frame, &counts)?;
-    let points = Points::new(features_mm, frame, moves, of_its_own, &touches);
-    Ok(Box::new(Placed { group: Group { touches, dimensions }, kind: points }))
+    rows.feature.unwrap_or_default().iter().for_each(|&feature| counts[feature] += 1);
+    let unknown = Unknown::new(statement, &features_mm, frame, &counts)?;
+    Ok(by_standing(&rows, statement.arm.encoders(), frame, features_mm, unknown))
+}
+
+/// Standings of two features touched once each as lengths, where the distance of features is all that is uncertain of them
+/// or nothing is; the others as touches.
+fn by_standing(
+    rows: &Rows,
+    encoders: usize,
+    frame: Frame,
+    features_mm: Vec<Vector3<f64>>,
+    unknown: Unknown,
+) -> Box<dyn Readings> {
+    let free = frame == Frame::Free && (unknown.dimensions.is_empty() || unknown.is_length);
+    let feature = |row: usize| rows.feature.map_or(0, |feature| feature[row]);
+    let length_mm = |rows: &[usize]| (features_mm[feature(rows[0])] - features_mm[feature(rows[1])]).norm();
+    let warmth = |row: usize| rows.poses.pose(row, encoders).warmth_k;
+    let known = |row: usize| unknown.of_its_own[feature(row)] == 0.0;
+    let a_bar = |standing: &[usize]| match *standing {
+        [a, b] => {
+            let alike = rows.probe[a] == rows.probe[b] && warmth(a) == warmth(b);
+            free && alike && known(a) && known(b) && length_mm(standing) > 0.0
+        }
+        _ => false,
+    };
+    let [(bars, bar_numbers), (others, other_numbers)] = Standings::new(rows).split(a_bar);
+    // rows of the file as each part counts them
+    let mut number = vec![0; rows.probe.len()];
+    let [of_bars, of_others] = [&bars, &others].map(|part| {
+        let mut of_part: Vec<u32> = part.order.iter().map(|&row| row as u32).collect();
+        of_part.sort_unstable();
+        of_part.iter().enumerate().for_each(|(k, &row)| number[row as usize] = k);
+        of_part
+    });
+    let mut parts = Vec::new();
+    if !bars.each.is_empty() {
+        let pairs: Vec<[u32; 2]> = bars.order.chunks_exact(2).map(|pair| [pair[0] as u32, pair[1] as u32]).collect();
+        let length = |k: usize| length_mm(&bars.order[2 * k..2 * k + 2]);
+        let lengths = Lengths::between(rows, encoders, &pairs, length, unknown.dimensions.first().cloned());
+        let ends = pairs.iter().map(|pair| pair.map(|row| number[row as usize] as u32)).collect();
+        parts.push(Part { readings: Box::new(Bars::new(lengths, ends)), rows: of_bars, standings: bar_numbers });
+    }
+    if !others.each.is_empty() || parts.is_empty() {
+        let Unknown { dimensions, moves, of_its_own, .. } = unknown;
+        let touches = Touches::new(rows, encoders, others, |row| number[row]);
+        let points = Points::new(features_mm, frame, moves, of_its_own, &touches);
+        let readings = Box::new(Placed { group: Group { touches, dimensions }, kind: points });
+        parts.push(Part { readings, rows: of_others, standings: other_numbers });
+    }
+    Parts::together(parts)
 }
