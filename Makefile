@@ -91,6 +91,10 @@ example-data: build ## make the readings of examples/platinum anew (fixed seed: 
 docs-output: build ## run what the docs show and write its output into docs/
 	$(BIN)/python tools/docs_output.py
 
+.PHONY: schemas
+schemas: build ## write the JSON Schemas of all formats anew, from the models that read and write them
+	$(BIN)/python tools/schemas.py
+
 .PHONY: lock
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
 	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }

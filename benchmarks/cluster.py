@@ -18,11 +18,11 @@ from distributed import LocalCluster
 
 import ulna
 from benchmarks.machine import describe
+from ulna.artefacts.artefact import Artefact
+from ulna.calibration.recalibrations import PIECE_RUNS, recalibrations
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import BAR_MM, SEVEN, true_arm
-from ulna.study import Artefact
 from ulna.work.pieces import Threads, Workers, workers_at
-from ulna.work.recalibrations import PIECE_RUNS, recalibrations
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "benchmarks" / "cluster.md"
 RUNS = 20_000

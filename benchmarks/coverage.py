@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 import ulna
-from ulna.model import Arm
+from ulna.arm.arm import Arm
+from ulna.calibration.recalibrations import recalibrations
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
-from ulna.study import Study
-from ulna.uncertainty.assess import Assessment, assess
-from ulna.uncertainty.measurands import Touched
-from ulna.uncertainty.regions import contains
-from ulna.uncertainty.task import Task
-from ulna.virtual.arm import VirtualArm
-from ulna.work.recalibrations import recalibrations
+from ulna.simulation.virtual_arm import VirtualArm
+from ulna.study.study import Study
+from ulna.uncertainties.assess import Assessment, assess
+from ulna.uncertainties.measurands import Touched
+from ulna.uncertainties.regions import contains
+from ulna.uncertainties.task import Task
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "benchmarks" / "coverage.md"
 BALL_MM = 30.0
@@ -35,14 +35,14 @@ Touches = tuple[np.ndarray, list[int]]
 def touches(kind: str, truth: VirtualArm, seed: int, rng: np.random.Generator) -> Touches:
     """Somewhere in the volume, at another place for each seed."""
     if kind == "point":
-        return truth.arm.tip(truth.poses(1, rng)), [0]
+        return truth.arm.tip(truth.anywhere(1, rng)), [0]
     if kind == "length":
         ends = np.array([[0.0, 0.0, 0.0], [rng.uniform(100.0, 700.0), 0.0, 0.0]])
-        return truth.places(ends, 1, seed, rng)[0], [0, 1]
+        return truth.places(ends, 1, rng)[0], [0, 1]
     direction = rng.standard_normal((TOUCHES, 3))
     direction[:, 2] = np.abs(direction[:, 2])
     ball = 0.5 * BALL_MM * direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    return truth.places(ball, 1, seed, rng)[0], [0] * TOUCHES
+    return truth.places(ball, 1, rng)[0], [0] * TOUCHES
 
 
 def measured(

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.readings import F64, FREE
+from benchmarks.lengths import F64, FREE
 
 #: (27,) parameters → JᵀJ (25, 25), Jᵀr (25,), rᵀr
 Folded = Callable[[F64], tuple[F64, F64, float]]

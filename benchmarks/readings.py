@@ -1,11 +1,8 @@
 """The readings and the arm that every contender is timed on: cheng2011, Tables 2 and 3, seven axes."""
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
+from benchmarks.lengths import F64, HELD, Lengths
 
 #: cheng2011, Table 2 (truth) and Table 3 (start): theta0 rad, alpha rad, a mm, d mm of joints 1 to 6
 TRUTH_LINKS = [
@@ -28,9 +25,6 @@ START_LINKS = [
 TRUTH_TIP_MM = (10.0, 0.0, 200.0)
 START_TIP_MM = (8.0 * np.cos(0.1), -8.0 * np.sin(0.1), 180.0)
 
-#: joint.1.theta0 and joint.1.d: no length depends on them, so every contender holds them
-HELD = np.array([0, 3])
-FREE = np.setdiff1d(np.arange(27), HELD)
 
 #: standard deviations of the noise where a task draws noise
 ENCODER_NOISE_RAD = 5e-6
@@ -47,15 +41,6 @@ TRUTH = parameters(TRUTH_LINKS, TRUTH_TIP_MM)
 START = parameters(START_LINKS, START_TIP_MM)
 #: the start with the held two at their true values, as an assigned base frame has them
 START[HELD] = TRUTH[HELD]
-
-
-@dataclass(frozen=True)
-class Lengths:
-    """Rows of two poses q, p (N, 7) in rad and the distance (N,) in mm between their tips."""
-
-    q_rad: F64
-    p_rad: F64
-    length_mm: F64
 
 
 def poses(count: int, seed: int) -> F64:

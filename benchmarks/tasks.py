@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.lengths import F64, Lengths
 from benchmarks.peers import Times
-from benchmarks.readings import F64, FOUND, START, TRUTH, Lengths, lengths, noisy, poses
+from benchmarks.readings import FOUND, START, TRUTH, lengths, noisy, poses
 
 FORWARD_POSES = 1_000_000
 #: what a touch costs by what is touched; on the bars, by what the arm does beyond its geometry

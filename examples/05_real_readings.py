@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 import ulna
-from ulna.importers.mukca import import_mukca
+from ulna.exchange.importers.mukca import import_mukca
 
 ROOT = Path(__file__).resolve().parents[1]
 data = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT.parent / "shared" / "data" / "mukca"

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 import ulna
-from ulna.simulation import Missed, Simulation, Touching
+from ulna.simulation.spec import Missed, Simulation, Touching
 from virtual_lengths import JOINTS
 
 BAR = ulna.Artefact("bar", "bar", {"A": (0.0, 0.0, 0.0), "B": (443.172, 0.0, 0.0)}, length_mm=443.172, u_mm=0.001)

@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 import ulna
-from ulna.verification.planning import play_test_plan
+from ulna.verification.test_plan import play_test_plan
 
 TRUTH = ulna.Arm.load(Path(__file__).parent / "platinum" / "truth.toml")
 ANGLES = [f"q{k + 1}" for k in range(TRUTH.n)]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ulna.certificate.dcc.document import dcc_certificate
+from ulna.documents.dcc.document import dcc_certificate
 
 HERE = Path(__file__).resolve().parent
 FOSSILS = HERE / "data" / "fossils"

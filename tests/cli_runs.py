@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 import polars as pl
 
-from ulna.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 
 TABLE_4 = [
     (1.521927, -1.572781, 42.4754, 149.7000),

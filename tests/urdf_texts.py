@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ulna.model import Arm
+from ulna.arm.arm import Arm
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ import numpy as np
 
 import ulna
 from docs_running import ROOT
-from ulna.simulation import Drawing, Simulation, Touching
-from ulna.study import Artefact
-from ulna.uncertainty.volume import VolumeTask, volume_map
+from ulna.artefacts.artefact import Artefact
+from ulna.simulation.spec import Drawing, Simulation, Touching
+from ulna.uncertainties.volume import VolumeTask, volume_map
 
 LENGTH_MM = 900.0
 """Of the test lengths."""

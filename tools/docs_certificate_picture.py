@@ -10,9 +10,9 @@ from PIL import Image
 
 from docs_reports import STEPS
 from docs_running import ROOT, reader_folder, ulna
-from ulna.document.gather import gather
-from ulna.document.pdf.render import certificate
-from ulna.document.pdf.typeset import pictures
+from ulna.documents.gather import gather
+from ulna.documents.pdf.render import certificate
+from ulna.documents.pdf.typeset import pictures
 
 #: picture → pages, from 1, side by side
 SHOWN = {"certificate-first.png": (1,), "certificate-results.png": (2, 3)}

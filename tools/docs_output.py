@@ -55,7 +55,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the
-#: docs are of today compares what is quick, without the times (tests/test_recovery_ways.py)
+#: docs are of today compares what is quick, without the times (tests/reproduce/test_ways.py)
 WAYS = {
     f"ways-{study}.txt": study
     for study in ("all", "shimojima2002", "santolaria2010", "wang2007", "gao2009", "wang2010", "cheng2010")

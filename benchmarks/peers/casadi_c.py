@@ -8,10 +8,10 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.lengths import F64, FREE, Lengths
 from benchmarks.levenberg_marquardt import minimise
 from benchmarks.peers import Contender
 from benchmarks.peers.native import FLAGS, compile_to
-from benchmarks.readings import F64, FREE, Lengths
 from benchmarks.tasks import measure_functions
 
 #: loops over rows around the generated functions, and folds each row into JᵀJ, Jᵀr and rᵀr

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.lengths import Lengths
 from benchmarks.peers import Contender, MissingPeerError, Times
 from benchmarks.peers.native import FLAGS, compile_to, run
-from benchmarks.readings import START, TRUTH, Lengths, lengths, noisy
+from benchmarks.readings import START, TRUTH, lengths, noisy
 from benchmarks.tasks import (
     FIT_LENGTHS,
     FORWARD_POSES,

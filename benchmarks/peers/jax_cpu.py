@@ -14,9 +14,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from benchmarks.lengths import F64, FREE, Lengths
 from benchmarks.levenberg_marquardt import minimise
 from benchmarks.peers import Contender
-from benchmarks.readings import F64, FREE, Lengths
 from benchmarks.tasks import measure_functions
 
 jax.config.update("jax_enable_x64", True)

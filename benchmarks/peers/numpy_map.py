@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from benchmarks.readings import F64, FREE, Lengths
+from benchmarks.lengths import F64, FREE, Lengths
 
 
 def tips(x: F64, q_rad: F64) -> F64:

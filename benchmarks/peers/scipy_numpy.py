@@ -4,9 +4,9 @@ import numpy as np
 import scipy
 from scipy.optimize import least_squares
 
+from benchmarks.lengths import F64, FREE, Lengths
 from benchmarks.peers import Contender
 from benchmarks.peers.numpy_map import residuals, residuals_and_jacobian, tips
-from benchmarks.readings import F64, FREE, Lengths
 from benchmarks.tasks import measure_functions
 
 

@@ -5,10 +5,11 @@ import time
 
 import numpy as np
 
+import ulna._core as _core
+from benchmarks.lengths import F64, HELD, Lengths
 from benchmarks.peers import Contender, Times
-from benchmarks.readings import ENCODER_NOISE_RAD, F64, FOUND, HELD, START, TRUTH, Lengths, lengths
+from benchmarks.readings import ENCODER_NOISE_RAD, FOUND, START, TRUTH, lengths
 from benchmarks.tasks import REPEATED_FITS, REPEATED_LENGTHS, measure_functions
-from ulna import _core
 
 
 def _arm(x: F64) -> _core.Arm:
@@ -20,8 +21,8 @@ def _arm(x: F64) -> _core.Arm:
 
 def _problem(x: F64, data: Lengths, encoder_u_rad: F64 | None = None) -> _core.Problem:
     problem = _core.Problem(_arm(x), encoder_u_rad, None)
-    rows = {"q_rad": data.q_rad, "p_rad": data.p_rad, "probe": np.zeros(len(data.length_mm), np.int64)}
-    problem.add("length", "lengths", measured_mm=data.length_mm, **rows)
+    probe = np.zeros(len(data.length_mm), np.int64)
+    problem.add("length", "lengths", q_rad=data.q_rad, p_rad=data.p_rad, probe=probe, measured_mm=data.length_mm)
     return problem
 
 

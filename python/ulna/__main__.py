@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -13,6 +14,9 @@ def main() -> None:
     before = signal.getsignal(signal.SIGINT)
     if before is signal.default_int_handler:  # not where the shell said to ignore it
         signal.signal(signal.SIGINT, _leave)
+    gc.set_threshold(100_000)  # loading makes objects that stay: looking for garbage among them is in vain
+    # looking for plug-ins that nobody has for us takes longer than reading a study
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from ulna.cli import main as run
 
     signal.signal(signal.SIGINT, before)

@@ -1,14 +1,14 @@
 """What the compiled core offers to Python: arrays in, arrays out, mm and rad always.
 
-Nothing here reads files, prints or knows units other than mm and rad; the typed front (`ulna.model` and
+Nothing here reads files, prints or knows units other than mm and rad; the typed front (`ulna.arm.model` and
 above) does that. All functions release the GIL. `UlnaError` carries a message meant for the user.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 F64: TypeAlias = NDArray[np.float64]
 I64: TypeAlias = NDArray[np.int64]
@@ -43,15 +43,16 @@ class Arm:
     ) -> None: ...
     def with_effects(
         self,
-        harmonic_orders: Sequence[int] | None = None,  # (K,) ascending from 1
-        harmonics_rad: F64 | None = None,  # (n, K, 2) cosine and sine amplitudes
-        expansion_per_k: F64 | None = None,  # (n,)
-        compliance_rad_per_nm: F64 | None = None,  # (n,)
-        masses_kg: F64 | None = None,  # (n,) of what moves with each joint
-        centres_mm: F64 | None = None,  # (n, 3) in the frame after each link
-        gravity: Sequence[float] | None = None,  # direction in the base frame; (0, 0, -1) where None
+        effects: Sequence[tuple[str, Mapping[str, ArrayLike]]],  # kind, and its arrays by name
     ) -> Arm:
-        """The same arm with these effects beyond its geometry, in place of those that it had."""
+        """The same arm with these effects beyond its geometry, in place of those that it had:
+
+        - "encoder-harmonics": orders (K,) ascending from 1, amplitudes_rad (n, K, 2) cosine and sine
+        - "backlash": backlash_rad (n,) full width of the hysteresis
+        - "link-expansion": expansion_per_k (n,)
+        - "compliance": compliance_rad_per_nm (n,), masses_kg (n,) of what moves with each joint, centres_mm (n, 3) in
+          the frame after each link, gravity (3,) its direction in the base frame
+        """
     @property
     def joints(self) -> int: ...
     @property
@@ -61,7 +62,7 @@ class Arm:
     @property
     def parameter_names(self) -> list[str]:
         """`joint.1.theta0, joint.1.alpha, joint.1.a, joint.1.d (or .beta) … probe.bent.x, .y, .z`, then of the effects
-        `joint.1.c1, joint.1.s1 …`, `joint.1.expansion …`, `joint.1.compliance …`."""
+        `joint.1.c1, joint.1.s1 …`, `joint.1.backlash …`, `joint.1.expansion …`, `joint.1.compliance …`."""
     @property
     def parameter_units(self) -> list[str]:
         """ "rad", "mm", "1/K" or "rad/(N m)" for each of `parameter_names`."""
@@ -71,26 +72,52 @@ class Arm:
     def reach_mm(self, probe: int = 0) -> float:
         """Sum of the lengths of all links and the tip: nothing is farther from the base."""
     # warmth_k, everywhere: (N,) or (N, n) temperature above 20 °C of the links; None: 20 °C
-    def tip(self, q_rad: F64, probe: int | I64 = 0, warmth_k: F64 | None = None) -> F64:
+    # approach, everywhere: (N, n) +1 where the encoder's angle had been rising, -1 falling, 0 or None: nobody knows
+    def tip(self, q_rad: F64, probe: int | I64 = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
         """(N, n) encoder angles → (N, 3) tip positions in the base frame; probe one index or one per row."""
-    def tip_plain(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
+    def tip_plain(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
         """The same by frames, one pose at a time: the formula as written, for comparison."""
-    def jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
+    def jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
         """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm for a unit of each."""
-    def encoder_jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> F64:
+    def encoder_jacobian(
+        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
+    ) -> F64:
         """(N, n) → (N, 3, n): ∂p/∂q_i, mm/rad."""
-    def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64, warmth_k: F64 | None = None) -> F64:
+    def tip_covariance(
+        self,
+        q_rad: F64,
+        probe: int,
+        columns: I64,
+        covariance: F64,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+    ) -> F64:
         """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
     def direction_effect(
-        self, q_rad: F64, probe: int, columns: I64, directions: F64, warmth_k: F64 | None = None
+        self,
+        q_rad: F64,
+        probe: int,
+        columns: I64,
+        directions: F64,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
     ) -> F64:
         """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters."""
     def pose_for_points(
-        self, points_mm: F64, limits_rad: F64, seed: int, probe: int = 0, tries: int = 40
+        self,
+        points_mm: F64,
+        limits_rad: F64,
+        seed: int,
+        probe: int = 0,
+        tries: int = 40,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
     ) -> tuple[F64, Bool]:
         """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a
         random elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
-    def check_jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None) -> float:
+    def check_jacobian(
+        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
+    ) -> float:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
 class LostDirection(TypedDict):
@@ -98,7 +125,7 @@ class LostDirection(TypedDict):
         str, float
     ]  # physical units (rad, mm); the largest effect has weight 1; moving along it changes no residual
     cause: str  # "base-frame", "scale", "probe-on-axis", "probe-unused", "joint-still", "parallel-axes",
-    # "redundant-link", "temperature-still", "no-moment", "coverage"
+    # "redundant-link", "temperature-still", "no-moment", "approach-one-sided", "approach-unknown", "coverage"
     because: str
     remedy: str
     frame: bool  # true: a rigid motion of the base frame or such; no length or shape depends on it
@@ -160,7 +187,7 @@ class Problem:
         placement: I64 | None = None,  # (N,) any labels; equal means the same standing. Ignored for frame = "arm"
         feature: I64 | None = None,  # (N,) index into features
         p_rad: F64 | None = None,  # (N, n) a second pose
-        measured_mm: F64 | None = None,  # (N,) the length between two poses
+        measured_mm: F64 | None = None,  # (N,) the length between two poses, or what an instrument says
         features_mm: F64 | None = None,  # (F, 3); a bar has (0,0,0) and (L,0,0); a seat has (0,0,0)
         labels: Sequence[str] | None = None,  # (F,) names of the features; else they are counted from 1
         feature_u_mm: F64 | None = None,  # (F,) standard uncertainty of the coordinates of each
@@ -171,6 +198,8 @@ class Problem:
         inside: bool = False,  # whether a hollow is touched
         balls_mm: F64 | None = None,  # (P,) diameter of each probe's ball
         warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        p_approach: F64 | None = None,  # of the second poses
     ) -> int:
         """Readings of one artefact; returns the group's number. Raises UlnaError for a kind that there is not, and for
         what a kind needs and lacks or has no use for, by name."""

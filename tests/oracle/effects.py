@@ -1,4 +1,4 @@
-"""Section 7 of the model, as written: an arm with eccentric encoders, links that grow and joints that give way."""
+"""Section 7 of the model, as written: an arm with eccentric encoders, with play, and links and joints that give way."""
 
 from dataclasses import dataclass, replace
 
@@ -9,14 +9,19 @@ from .chain import COMPLEX_STEP, Array, Chain, _identity, _shift_along, _turn_ab
 
 G = 9.80665  # m/s², standard gravity
 
+#: in the order of the parameters
+BLOCKS = ("harmonics_rad", "backlash_rad", "expansion_per_k", "compliance_rad_per_nm")
+
 
 @dataclass(frozen=True)
 class Affected:
-    """A chain and its effects; readings are (N, n) angles, or (N, 2 n): angles, then kelvins above 20 °C per link."""
+    """A chain and its effects; readings are (N, n) angles, or (N, 2 n): angles, then kelvins above 20 °C per link, or
+    (N, 3 n): behind them from which side each joint was approached, -1, 0 or +1."""
 
     chain: Chain
     orders: tuple[int, ...] = ()
     harmonics_rad: Array | None = None  # (n, orders, 2): c, s
+    backlash_rad: Array | None = None  # (n,)
     expansion_per_k: Array | None = None  # (n,)
     compliance_rad_per_nm: Array | None = None  # (n,)
     masses_kg: Array | None = None  # (n,)
@@ -37,7 +42,7 @@ class Affected:
 
     @property
     def blocks(self) -> list[Array]:
-        given = (self.harmonics_rad, self.expansion_per_k, self.compliance_rad_per_nm)
+        given = [getattr(self, name) for name in BLOCKS]
         return [np.asarray(block) for block in given if block is not None]
 
     @property
@@ -51,7 +56,7 @@ class Affected:
     def with_parameters(self, parameters: NDArray) -> "Affected":
         at = len(self.chain.parameters)
         changed = {}
-        for name in ("harmonics_rad", "expansion_per_k", "compliance_rad_per_nm"):
+        for name in BLOCKS:
             block = getattr(self, name)
             if block is not None:
                 changed[name] = parameters[at : at + block.size].reshape(block.shape)
@@ -61,7 +66,8 @@ class Affected:
     def tip(self, readings: NDArray, probe: int | NDArray = 0) -> NDArray:
         readings = np.atleast_2d(readings)
         n, count = self.joints, len(readings)
-        q, warmth = readings[:, :n], readings[:, n:] if readings.shape[1] > n else np.zeros((count, n))
+        told = np.hstack([readings, np.zeros((count, 3 * n - readings.shape[1]))])
+        q, warmth, approach = np.split(told, 3, axis=1)
         turns = self.rigid_turns(q)
         if self.compliance_rad_per_nm is not None:
             turns = turns + self.compliance_rad_per_nm * self.moments_nm(turns)
@@ -69,6 +75,8 @@ class Affected:
             for k, order in enumerate(self.orders):
                 c, s = self.harmonics_rad[:, k, 0], self.harmonics_rad[:, k, 1]
                 turns = turns + np.array(self.sign) * (c * np.cos(order * q) + s * np.sin(order * q))
+        if self.backlash_rad is not None:
+            turns = turns + np.array(self.sign) * self.backlash_rad / 2 * approach
         grown = 1.0 + (0.0 if self.expansion_per_k is None else self.expansion_per_k * warmth) + np.zeros((count, n))
         frame = self._frames(turns, grown)[-1]
         tips = np.asarray(self.chain.tips_mm)[np.broadcast_to(probe, (count,))] * grown[:, -1:]
@@ -135,7 +143,7 @@ class Affected:
 def affected(
     arm: Chain,
     rng: np.random.Generator,
-    blocks: str = "harmonics expansion compliance",
+    blocks: str = "harmonics backlash expansion compliance",
     orders: tuple[int, ...] = (1, 2),
 ) -> Affected:
     """The arm with some of the effects, as large as those of real arms and robots; heavier towards the base."""
@@ -143,6 +151,8 @@ def affected(
     extra: dict = {}
     if "harmonics" in blocks:
         extra |= {"orders": orders, "harmonics_rad": 1e-4 * rng.standard_normal((n, len(orders), 2))}
+    if "backlash" in blocks:
+        extra |= {"backlash_rad": rng.uniform(2e-5, 2e-4, n)}
     if "expansion" in blocks:
         extra |= {"expansion_per_k": rng.uniform(1e-6, 25e-6, n)}
     if "compliance" in blocks:

@@ -1,15 +1,13 @@
 //! `ulna._core.Arm`.
 
-use crate::arrays::{array1, array2, indices, rows, slice, warmth};
-use crate::build;
+use crate::arrays::{Told, array1, array2, indices, rows, slice};
+use crate::build::{self, Stateable};
 use crate::errors::{UlnaError, raise};
-use numpy::{
-    PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
-    PyReadonlyArrayDyn,
-};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
-use ulna::arm::{Compliance, Effects, Expansion};
+use std::collections::BTreeMap;
+use ulna::arm::Effects;
 use ulna::kinematics::inverse::{Limits, postures_for_points};
 use ulna::kinematics::{self, Angles, Chain, Poses, batch};
 use ulna::simd::Columns;
@@ -66,32 +64,9 @@ impl Arm {
         Ok(Arm { inner: inner.map_err(raise)? })
     }
 
-    #[pyo3(signature = (harmonic_orders=None, harmonics_rad=None, expansion_per_k=None, compliance_rad_per_nm=None,
-                        masses_kg=None, centres_mm=None, gravity=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn with_effects(
-        &self,
-        harmonic_orders: Option<Vec<u32>>,
-        harmonics_rad: Option<PyReadonlyArray3<'_, f64>>,
-        expansion_per_k: Option<PyReadonlyArray1<'_, f64>>,
-        compliance_rad_per_nm: Option<PyReadonlyArray1<'_, f64>>,
-        masses_kg: Option<PyReadonlyArray1<'_, f64>>,
-        centres_mm: Option<PyReadonlyArray2<'_, f64>>,
-        gravity: Option<[f64; 3]>,
-    ) -> PyResult<Arm> {
-        let n = self.inner.encoders();
-        let mut effects = Effects::default();
-        if let (Some(orders), Some(rad)) = (harmonic_orders, harmonics_rad) {
-            effects.harmonics = Some(build::harmonics(orders, &rad, n)?);
-        }
-        effects.expansion = expansion_per_k.map(|each| Expansion { per_kelvin: slice(&each).into_owned() });
-        if let (Some(compliance), Some(masses), Some(centres)) = (compliance_rad_per_nm, masses_kg, centres_mm) {
-            effects.compliance = Some(Compliance {
-                rad_per_nm: slice(&compliance).into_owned(),
-                bodies: build::bodies(&slice(&masses), &rows(&centres, 3, "the centres of mass")?)?,
-                gravity: gravity.unwrap_or([0.0, 0.0, -1.0]),
-            });
-        }
+    fn with_effects(&self, effects: Vec<(String, BTreeMap<String, Stateable<'_>>)>) -> PyResult<Arm> {
+        let stated = effects.iter().map(|(kind, arrays)| build::stated(kind, arrays));
+        let effects = Effects::from_stated(stated, self.inner.encoders()).map_err(raise)?;
         Ok(Arm { inner: self.inner.with_effects(effects).map_err(raise)? })
     }
 
@@ -136,15 +111,16 @@ impl Arm {
         Ok(self.inner.reach_mm(probe))
     }
 
-    #[pyo3(signature = (q_rad, probe=None, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe=None, warmth_k=None, approach=None))]
     fn tip<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: Option<Bound<'py, PyAny>>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
         let (poses, count) = (read.angles(), read.count);
         let chain = Chain::new(&self.inner);
         let mut out = vec![0.0; 3 * count];
@@ -175,32 +151,34 @@ impl Arm {
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
     fn tip_plain<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
         let (poses, n) = (read.angles(), self.inner.encoders());
         let tip = |row: usize| -> [f64; 3] { kinematics::tip_mm(&self.inner, probe, poses.pose(row, n)).coords.into() };
         let out = py.detach(|| (0..read.count).flat_map(tip).collect());
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let tip = self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
         let poses = read.angles();
         let (count, probes) = (self.inner.parameter_count(), self.inner.probes().len());
         let out = py.detach(|| {
@@ -216,16 +194,17 @@ impl Arm {
         PyArray1::from_vec(py, out).reshape([read.count, 3, count])
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
     fn encoder_jacobian<'py>(
         &self,
         py: Python<'py>,
         q_rad: PyReadonlyArray2<'py, f64>,
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
         let (poses, n) = (read.angles(), self.inner.encoders());
         let of_pose = |row: usize| {
             let jacobian = kinematics::encoder_jacobian(&self.inner, probe, poses.pose(row, n));
@@ -235,7 +214,8 @@ impl Arm {
         PyArray1::from_vec(py, out).reshape([read.count, 3, n])
     }
 
-    #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None, approach=None))]
+    #[allow(clippy::too_many_arguments)]
     fn tip_covariance<'py>(
         &self,
         py: Python<'py>,
@@ -244,9 +224,10 @@ impl Arm {
         columns: PyReadonlyArray1<'py, i64>,
         covariance: PyReadonlyArray2<'py, f64>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref())?, self.columns(&columns)?);
+        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?, self.columns(&columns)?);
         let covariance = rows(&covariance, columns.len(), "the covariance")?;
         if covariance.len() != columns.len() * columns.len() {
             return Err(UlnaError::new_err("the covariance is not square"));
@@ -257,7 +238,8 @@ impl Arm {
         array2(py, out, 6)
     }
 
-    #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None, approach=None))]
+    #[allow(clippy::too_many_arguments)]
     fn direction_effect<'py>(
         &self,
         py: Python<'py>,
@@ -266,9 +248,10 @@ impl Arm {
         columns: PyReadonlyArray1<'py, i64>,
         directions: PyReadonlyArray2<'py, f64>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.probe(probe)?;
-        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref())?, self.columns(&columns)?);
+        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
         let poses = read.angles();
         let out = py
@@ -276,8 +259,8 @@ impl Arm {
         Ok(array1(py, &out))
     }
 
-    #[pyo3(signature = (points_mm, limits_rad, seed, probe=0, tries=40))]
-    #[allow(clippy::type_complexity)]
+    #[pyo3(signature = (points_mm, limits_rad, seed, probe=0, tries=40, warmth_k=None, approach=None))]
+    #[allow(clippy::type_complexity, clippy::too_many_arguments)]
     fn pose_for_points<'py>(
         &self,
         py: Python<'py>,
@@ -286,6 +269,8 @@ impl Arm {
         seed: u64,
         probe: usize,
         tries: usize,
+        warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<bool>>)> {
         self.probe(probe)?;
         let points = rows(&points_mm, 3, "the points")?;
@@ -296,8 +281,10 @@ impl Arm {
             return Err(UlnaError::new_err(message));
         }
         let limits = Limits { range_rad: limits.chunks_exact(2).map(|l| (l[0], l[1])).collect() };
+        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), points.len() / 3, n)?;
+        let wanted = (points.as_ref(), told.conditions());
         let watch = crate::watch::Watch::new(None);
-        let found = py.detach(|| postures_for_points(&self.inner, probe, &points, &limits, tries, seed, &watch));
+        let found = py.detach(|| postures_for_points(&self.inner, probe, wanted, &limits, tries, seed, &watch));
         let Some(postures) = found else {
             return Err(watch.failure().unwrap_or_else(|| raise(ulna::Error::Interrupted)));
         };
@@ -305,15 +292,16 @@ impl Arm {
         Ok((array2(py, postures, n)?, PyArray1::from_vec(py, reached)))
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
     fn check_jacobian(
         &self,
         q_rad: PyReadonlyArray2<'_, f64>,
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<f64> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
         Ok(ulna::kinematics::propagate::check_jacobian(&self.inner, probe, read.angles()))
     }
 }
@@ -321,7 +309,7 @@ impl Arm {
 /// Poses as they were handed over.
 struct Read<'a> {
     q_rad: Cow<'a, [f64]>,
-    warmth_k: Cow<'a, [f64]>,
+    told: Told<'a>,
     count: usize,
 }
 
@@ -330,14 +318,15 @@ impl<'a> Read<'a> {
         arm: &Arm,
         q_rad: &'a PyReadonlyArray2<'_, f64>,
         warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<Read<'a>> {
         let n = arm.inner.encoders();
         let q_rad = rows(q_rad, n, "the encoder angles")?;
         let count = q_rad.len() / n;
-        Ok(Read { warmth_k: warmth(warmth_k, count, n)?, q_rad, count })
+        Ok(Read { told: Told::new(warmth_k, approach, count, n)?, q_rad, count })
     }
 
     fn angles(&self) -> Angles<'_> {
-        Angles { q_rad: &self.q_rad, warmth_k: &self.warmth_k }
+        Angles { q_rad: &self.q_rad, conditions: self.told.conditions() }
     }
 }

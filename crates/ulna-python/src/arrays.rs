@@ -1,9 +1,10 @@
 //! NumPy arrays as the slices the core takes.
 
-use crate::errors::UlnaError;
+use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
+use ulna::kinematics::Conditions;
 
 /// A one-dimensional array as a slice, copied where it is not contiguous.
 pub fn slice<'a, T: numpy::Element + Copy>(array: &'a PyReadonlyArray1<'_, T>) -> Cow<'a, [T]> {
@@ -29,21 +30,50 @@ pub fn rows<'a>(array: &'a PyReadonlyArray2<'_, f64>, columns: usize, what: &str
     })
 }
 
-/// Temperatures above 20 °C of `count` poses, one each or one for each joint; none: empty.
-///
-/// # Errors
-/// Another shape.
-pub fn warmth<'a>(
+/// What was true at poses beside their angles, as it was handed over.
+pub struct Told<'a> {
+    warmth_k: Cow<'a, [f64]>,
+    approach: Cow<'a, [f64]>,
+}
+
+impl<'a> Told<'a> {
+    /// Temperatures above 20 °C of `count` poses, one each or one for each joint, and from which side each joint was
+    /// approached; none: empty.
+    ///
+    /// # Errors
+    /// Another shape, or an approach other than -1, 0 or +1.
+    pub fn new(
+        warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        count: usize,
+        joints: usize,
+    ) -> PyResult<Told<'a>> {
+        let of_joints = format!("({count}, {joints})");
+        let either = format!("({count},) or {of_joints}");
+        let told = Told {
+            warmth_k: shaped(warmth_k, &[&[count], &[count, joints]], "the temperatures", &either)?,
+            approach: shaped(approach, &[&[count, joints]], "the approaches", &of_joints)?,
+        };
+        told.conditions().check("poses", count, joints).map_err(raise)?;
+        Ok(told)
+    }
+
+    /// For the core.
+    pub fn conditions(&self) -> Conditions<'_> {
+        Conditions { warmth_k: &self.warmth_k, approach: &self.approach }
+    }
+}
+
+fn shaped<'a>(
     array: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
-    count: usize,
-    joints: usize,
+    shapes: &[&[usize]],
+    what: &str,
+    expected: &str,
 ) -> PyResult<Cow<'a, [f64]>> {
     let Some(array) = array else { return Ok(Cow::Borrowed(&[])) };
     let view = array.as_array();
-    if view.shape() != [count] && view.shape() != [count, joints] {
-        let message =
-            format!("the temperatures have the shape {:?}, expected ({count},) or ({count}, {joints})", view.shape());
-        return Err(UlnaError::new_err(message));
+    if !shapes.contains(&view.shape()) {
+        return Err(UlnaError::new_err(format!("{what} have the shape {:?}, expected {expected}", view.shape())));
     }
     Ok(match view.to_slice() {
         Some(slice) => Cow::Borrowed(slice),

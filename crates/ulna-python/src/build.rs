@@ -1,10 +1,11 @@
 //! An arm of the core from arrays of Python: shapes are checked here, numbers in the core.
 
 use crate::errors::{UlnaError, raise};
-use numpy::{PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::{AllowTypeChange, PyArrayLikeDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
-use ulna::arm::{Body, Harmonics, Joint, JointModel, Probe};
+use std::collections::BTreeMap;
+use ulna::arm::{Array, Joint, JointModel, Probe, Stated};
 
 /// Joints with a link from theta0, alpha, a, d, beta and sign of every joint.
 ///
@@ -61,36 +62,14 @@ pub fn probes(names: Vec<String>, tips_mm: &[f64]) -> PyResult<Vec<Probe>> {
     Ok(names.into_iter().zip(tips).map(|(name, t)| Probe { name, tip_mm: [t[0], t[1], t[2]] }).collect())
 }
 
-/// Harmonics of `joints` encoders, from (joints, orders, 2) amplitudes.
-///
-/// # Errors
-/// Another shape, or orders that do not ascend from 1.
-pub fn harmonics(orders: Vec<u32>, rad: &PyReadonlyArray3<'_, f64>, joints: usize) -> PyResult<Harmonics> {
-    if rad.shape() != [joints, orders.len(), 2] {
-        let shape = rad.shape();
-        let message = format!("harmonics_rad has the shape {shape:?}, expected ({joints}, {}, 2)", orders.len());
-        return Err(UlnaError::new_err(message));
-    }
-    let ascend = orders.first() >= Some(&1) && orders.windows(2).all(|pair| pair[0] < pair[1]);
-    if !ascend {
-        return Err(UlnaError::new_err(format!(
-            "the orders of harmonics are {orders:?}; expected 1 or more, ascending"
-        )));
-    }
-    let flat: Vec<f64> = rad.as_array().iter().copied().collect();
-    let amplitudes_rad = flat.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-    Ok(Harmonics { orders, amplitudes_rad })
-}
+/// Anything that NumPy can make numbers of.
+pub type Stateable<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 
-/// Bodies from masses and row-major centres.
-///
-/// # Errors
-/// Another number of centres.
-pub fn bodies(masses_kg: &[f64], centres_mm: &[f64]) -> PyResult<Vec<Body>> {
-    if 3 * masses_kg.len() != centres_mm.len() {
-        let message = format!("{} centres of mass were given for {} masses", centres_mm.len() / 3, masses_kg.len());
-        return Err(UlnaError::new_err(message));
-    }
-    let body = |(&mass_kg, c): (&f64, &[f64])| Body { mass_kg, centre_mm: [c[0], c[1], c[2]] };
-    Ok(masses_kg.iter().zip(centres_mm.chunks_exact(3)).map(body).collect())
+/// An effect's arrays by name.
+pub fn stated(kind: &str, arrays: &BTreeMap<String, Stateable<'_>>) -> Stated {
+    let array = |given: &Stateable<'_>| {
+        let view = given.as_array();
+        Array { shape: view.shape().to_vec(), values: view.iter().copied().collect() }
+    };
+    Stated::new(kind, arrays.iter().map(|(name, given)| (name.clone(), array(given))))
 }

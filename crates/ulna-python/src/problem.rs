@@ -1,7 +1,7 @@
 //! `ulna._core.Problem`.
 
 use crate::arm::Arm;
-use crate::arrays::{array1, indices, rows, slice, warmth};
+use crate::arrays::{Told, array1, indices, rows, slice};
 use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -32,7 +32,7 @@ impl Problem {
 
     #[pyo3(signature = (kind, artefact, *, q_rad, probe, placement=None, feature=None, p_rad=None, measured_mm=None,
                         features_mm=None, labels=None, feature_u_mm=None, features_fitted=false, frame=None,
-                        dimensions=vec![], inside=false, balls_mm=None, warmth_k=None))]
+                        dimensions=vec![], inside=false, balls_mm=None, warmth_k=None, approach=None, p_approach=None))]
     #[allow(clippy::too_many_arguments)]
     fn add(
         &mut self,
@@ -53,6 +53,8 @@ impl Problem {
         inside: bool,
         balls_mm: Option<PyReadonlyArray1<'_, f64>>,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
+        approach: Option<PyReadonlyArrayDyn<'_, f64>>,
+        p_approach: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let n = self.inner.arm().encoders();
         let q_rad = rows(&q_rad, n, "the poses")?;
@@ -77,10 +79,16 @@ impl Problem {
             inside,
             balls_mm: balls_mm.as_deref(),
         };
+        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), q_rad.len() / n, n)?;
+        let second = p_rad.as_ref().map(|p_rad| {
+            let told = Told::new(warmth_k.as_ref(), p_approach.as_ref(), p_rad.len() / n, n)?;
+            PyResult::Ok((p_rad, told))
+        });
+        let second = second.transpose()?;
         let rows = Rows {
-            poses: Angles { q_rad: &q_rad, warmth_k: &warmth(warmth_k.as_ref(), q_rad.len() / n, n)? },
+            poses: Angles { q_rad: &q_rad, conditions: told.conditions() },
             probe: &indices(&probe, "probe")?,
-            p_rad: p_rad.as_deref(),
+            second: second.as_ref().map(|(q_rad, told)| Angles { q_rad, conditions: told.conditions() }),
             feature: feature.as_deref(),
             placement: placement.as_deref(),
             measured_mm: measured_mm.as_deref(),

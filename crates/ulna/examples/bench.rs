@@ -52,7 +52,7 @@ fn problem(rng: &mut Xoshiro256PlusPlus, count: usize, noise: Option<Noise>) -> 
     let rows = Rows {
         poses: Angles::cold(&q),
         probe: &vec![0; count],
-        p_rad: Some(&p),
+        second: Some(Angles::cold(&p)),
         measured_mm: Some(&length_mm),
         ..Rows::default()
     };

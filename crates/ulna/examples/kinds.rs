@@ -10,10 +10,10 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use shared::{Dropped, TABLE_2, arm, best};
 use std::f64::consts::PI;
-use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics};
+use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics};
 use ulna::artefacts::{Rows, Size, Stated, Weighing};
 use ulna::kinematics::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{Angles, tip_mm};
+use ulna::kinematics::{Angles, Conditions, tip_mm};
 use ulna::monitor::Unwatched;
 use ulna::problem::Problem;
 use ulna::problem::assembly::Assembly;
@@ -85,7 +85,7 @@ fn touch(truth: &Arm, standing: Standing, rng: &mut Xoshiro256PlusPlus) -> Touch
             .iter()
             .map(|(at, _)| {
                 let point = origin + nalgebra::Vector3::from(*at);
-                posture_for_point(truth, 0, point, &limits, 10, rng)
+                posture_for_point(truth, 0, (point, Conditions::default()), &limits, 10, rng)
             })
             .collect();
         let Some(poses) = poses else { continue };
@@ -150,6 +150,7 @@ fn main() {
     for (name, effects) in [
         ("harmonics 1", Effects { harmonics: Some(Harmonics::zero(&[1], 7)), ..Effects::default() }),
         ("harmonics 1, 2", Effects { harmonics: Some(Harmonics::zero(&[1, 2], 7)), ..Effects::default() }),
+        ("backlash", Effects { backlash: Some(Backlash { rad: vec![1e-5; 7] }), ..Effects::default() }),
         ("expansion", Effects { expansion: Some(Expansion { per_kelvin: vec![1e-5; 7] }), ..Effects::default() }),
         ("compliance", Effects { compliance: Some(compliance), ..Effects::default() }),
     ] {

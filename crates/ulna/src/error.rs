@@ -60,7 +60,7 @@ pub enum Error {
     },
     /// A kind of artefact needs more than was stated.
     #[error("artefact {artefact} is of kind {kind:?}, which needs {what}; it is not given")]
-    Missing {
+    Lacking {
         /// The artefact's name.
         artefact: String,
         /// Its kind.
@@ -86,6 +86,47 @@ pub enum Error {
         /// What they are.
         why: String,
     },
+    /// An array has another shape than the model asks for.
+    #[error("{what} has the shape {got:?}, expected {expected:?}")]
+    Dimensions {
+        /// Which array.
+        what: String,
+        /// Its lengths.
+        got: Vec<usize>,
+        /// The lengths it should have.
+        expected: Vec<usize>,
+    },
+    /// Something that must be stated is not.
+    #[error("{what} is not stated")]
+    Missing {
+        /// What.
+        what: String,
+    },
+    /// Something is stated that nobody asked for.
+    #[error("{what} has no {name:?}")]
+    Unknown {
+        /// Of what.
+        what: String,
+        /// What it was called.
+        name: String,
+    },
+    /// Something is stated twice.
+    #[error("{what} is stated twice")]
+    Twice {
+        /// What.
+        what: String,
+    },
+    /// An effect beyond the geometry that does not exist.
+    #[error("there is no effect {given:?}; expected one of {known:?}")]
+    NoSuchEffect {
+        /// The word given.
+        given: String,
+        /// Those that there are.
+        known: &'static [&'static str],
+    },
+    /// Orders of harmonics that are none, or come twice.
+    #[error("the orders of harmonics are {0:?}; expected 1 or more, ascending")]
+    Orders(Vec<u32>),
     /// There is nothing to fit to.
     #[error("there are no readings")]
     NoReadings,

@@ -2,24 +2,24 @@
 
 mod common;
 
-use common::{angles, any_arm, any_effects, any_full_arm, rng, warmth};
+use common::{Told, angles, any_arm, any_effects, any_full_arm, rng};
 use proptest::prelude::*;
 use rand::RngExt;
 use ulna::arm::Arm;
 use ulna::kinematics::propagate::check_jacobian;
-use ulna::kinematics::{Angles, Chain, Poses, batch, encoder_jacobian, jacobian, tip_mm};
+use ulna::kinematics::{Chain, Poses, batch, encoder_jacobian, jacobian, tip_mm};
 use ulna::simd::Columns;
 use ulna::solver::numdiff::worst_difference;
 
-/// Any arm: bare or full last link, with or without effects beyond its geometry; and warmth for its poses.
-fn any(seed: u64, encoders: usize, rows: usize) -> (Arm, Vec<f64>, Vec<f64>) {
+/// Any arm: bare or full last link, with or without effects beyond its geometry; and what is true at its poses.
+fn any(seed: u64, encoders: usize, rows: usize) -> (Arm, Vec<f64>, Told) {
     let mut rng = rng(seed);
     let arm = if rng.random() { any_arm(&mut rng, encoders) } else { any_full_arm(&mut rng, encoders) };
     let arm = if rng.random() { arm.with_effects(any_effects(&mut rng, encoders)).unwrap() } else { arm };
     let q = angles(&mut rng, encoders * rows);
-    let width = [0, 1, encoders][rng.random_range(0..3)];
-    let warmth_k = warmth(&mut rng, width * rows);
-    (arm, q, warmth_k)
+    let (warmths, approaches) = ([0, 1, encoders][rng.random_range(0..3)], [0, encoders][rng.random_range(0..2)]);
+    let told = Told::any(&mut rng, rows, warmths, approaches);
+    (arm, q, told)
 }
 
 proptest! {
@@ -27,8 +27,8 @@ proptest! {
 
     #[test]
     fn batch_equals_plain(seed in 0..u64::MAX, encoders in 2usize..12, rows in 1usize..70) {
-        let (arm, q_rad, warmth_k) = any(seed, encoders, rows);
-        let poses = Angles { q_rad: &q_rad, warmth_k: &warmth_k };
+        let (arm, q_rad, told) = any(seed, encoders, rows);
+        let poses = told.at(&q_rad);
         let tolerance = 2e-14 * arm.reach_mm(1) * encoders as f64;
         let chain = Chain::new(&arm);
 
@@ -55,8 +55,8 @@ proptest! {
     #[test]
     fn batch_derivatives_equal_plain(seed in 0..u64::MAX, encoders in 2usize..9) {
         let rows = 9;
-        let (arm, q_rad, warmth_k) = any(seed, encoders, rows);
-        let poses = Angles { q_rad: &q_rad, warmth_k: &warmth_k };
+        let (arm, q_rad, told) = any(seed, encoders, rows);
+        let poses = told.at(&q_rad);
         let chain = Chain::new(&arm);
         let plain: Vec<_> = (0..rows).map(|row| jacobian(&arm, 0, poses.pose(row, encoders))).collect();
         let mut worst = 0.0_f64;
@@ -72,7 +72,7 @@ proptest! {
 
     #[test]
     fn derivatives_equal_differences(seed in 0..u64::MAX, encoders in 2usize..9) {
-        let (arm, generic, warmth_k) = any(seed, encoders, 1);
+        let (arm, generic, told) = any(seed, encoders, 1);
         let near_zero: Vec<f64> = generic.iter().map(|q| q * 1e-9).collect();
         // stretched out: every joint where its link lies along the one before
         let singular: Vec<f64> = arm
@@ -81,18 +81,18 @@ proptest! {
             .map(|(sign, theta0)| sign * theta0)
             .collect();
         for q_rad in [&generic, &near_zero, &singular] {
-            let worst = check_jacobian(&arm, 0, Angles { q_rad, warmth_k: &warmth_k });
+            let worst = check_jacobian(&arm, 0, told.at(q_rad));
             prop_assert!(worst < 3e-11, "{worst:e}");
         }
     }
 
     #[test]
     fn encoder_derivatives_equal_differences(seed in 0..u64::MAX, encoders in 2usize..9) {
-        let (arm, q_rad, warmth_k) = any(seed, encoders, 1);
+        let (arm, q_rad, told) = any(seed, encoders, 1);
         let tip = |q: &[f64]| {
-            tip_mm(&arm, 0, Angles { q_rad: q, warmth_k: &warmth_k }.pose(0, encoders)).coords.as_slice().to_vec()
+            tip_mm(&arm, 0, told.at(q).pose(0, encoders)).coords.as_slice().to_vec()
         };
-        let analytic = encoder_jacobian(&arm, 0, Angles { q_rad: &q_rad, warmth_k: &warmth_k }.pose(0, encoders));
+        let analytic = encoder_jacobian(&arm, 0, told.at(&q_rad).pose(0, encoders));
         let worst = worst_difference(tip, &q_rad, &vec![1e-3; encoders], analytic.transpose().as_slice());
         prop_assert!(worst < 1e-10 * arm.reach_mm(0), "{worst:e}");
     }

@@ -40,7 +40,7 @@ fn one(q_rad: &[f64]) -> Rows<'_> {
 #[test]
 fn a_length_that_is_none_is_refused() {
     for length_mm in [0.0, -1.0, 1e-300, 1e300, f64::NAN] {
-        let rows = Rows { p_rad: Some(&[0.2; 5]), measured_mm: Some(&[length_mm]), ..one(&[0.1; 5]) };
+        let rows = Rows { second: Some(Angles::cold(&[0.2; 5])), measured_mm: Some(&[length_mm]), ..one(&[0.1; 5]) };
         let message = refused("length", &Stated { name: "bar", ..Stated::default() }, &rows);
         assert!(message.contains(" length") && message.contains("mm, is "), "{message}");
     }

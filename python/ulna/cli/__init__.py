@@ -35,9 +35,9 @@ app = typer.Typer(
 
 def _version(asked: bool) -> None:
     if asked:
-        from ulna import __version__
+        from ulna.ground.version import VERSION
 
-        print(f"ulna {__version__}")
+        print(f"ulna {VERSION}")
         raise typer.Exit
 
 

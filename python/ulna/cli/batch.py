@@ -34,13 +34,13 @@ def batch(
 
     Example: [bold]ulna batch arms -o out/arms[/bold]
     """
-    import ulna
+    from ulna.calibration.batch import batch as run_batch
     from ulna.cli import output
-    from ulna.report.batch import batch_report
+    from ulna.cli.printed.batch import batch_report
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:
-        found = ulna.batch(folder, out, only=only, workers=workers, force=force, progress=progress)
+        found = run_batch(folder, out, only=only, workers=workers, force=force, progress=progress)
     if as_json:
         output.print_json(found.as_dict())
     else:

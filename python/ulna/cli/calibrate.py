@@ -6,34 +6,35 @@ import sys
 
 import typer
 
-from ulna.cli.options import Force, Json, OutFolder, Study
+from ulna.cli.options import Force, Json, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
-def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
-    Prints the figures before and after, the parameters with their standard uncertainties, what the readings could not
-    determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far off. With
-    -o it writes result.json, arm.toml (the calibrated arm, ready to use) and residuals.csv. Exit code 1 where the fit
-    did not converge.
+    Prints the figures before and after, the parameters with their standard uncertainties, what the readings could
+    not determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far
+    off. With -o it writes result.json, arm.toml (the calibrated arm, ready to use) and residuals.csv
+    (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
-    import ulna
+    from ulna.calibration.calibrate import calibrate as run_calibration
+    from ulna.calibration.result import FILES
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.calibration import calibration_report, where_to_look
-    from ulna.result import FILES
+    from ulna.cli.printed.calibration import calibration_report, where_to_look
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
-    loaded = ulna.Study.load(study)
+    loaded = Study.load(study)
     if out is not None:
         refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     with output.progress_bar() as progress:
-        result = ulna.calibrate(loaded, progress)
+        result = run_calibration(loaded, progress)
     if out is not None:
         result.save(out, force)
     if as_json:
@@ -41,7 +42,7 @@ def calibrate(study: Study, out: OutFolder = None, force: Force = False, as_json
     else:
         output.print_renderable(*calibration_report(result))
     if out is not None:
-        output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")
+        output.say(f"Written: {', '.join(str(out / name) for name in FILES if (out / name).exists())}")
     elif not as_json:
         output.say("Nothing was written: give -o DIR to keep the result.")
     if not result.fit.converged:

@@ -38,13 +38,13 @@ def certificate(
 
     Example: [bold]ulna certificate out/result.json lab.toml --dcc -o certificate.xml[/bold]
     """
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import refuse_inputs, write_file
+    from ulna.formats.output import refuse_inputs, write_file
+    from ulna.ground.errors import UlnaInputError
 
     if out is None:
         raise UlnaInputError("option -o is missing; expected the file to write. Add -o FILE.")
     if make_lab:
-        from ulna.files.laboratory_template import TEMPLATE
+        from ulna.documents.laboratory.template import TEMPLATE
 
         if result is not None or dcc or force or verification:
             raise UlnaInputError(
@@ -64,9 +64,9 @@ def certificate(
             "option --dcc is missing; expected it, for XML is the one form that this command writes. Add --dcc, or "
             "print a certificate with ulna report RESULT --pdf."
         )
-    from ulna.certificate.dcc.document import dcc_certificate
     from ulna.cli import output
-    from ulna.report.certificate import certificate_report
+    from ulna.cli.printed.certificate import certificate_report
+    from ulna.documents.dcc.document import dcc_certificate
 
     tests = verification or []
     refuse_inputs([out], [result, laboratory, *tests])

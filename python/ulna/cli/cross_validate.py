@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import Force, Json, OutFolder, Study
+from ulna.cli.options import Force, Json, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
 def cross_validate(
-    study: Study,
+    study: StudyArgument,
     by: Annotated[
         str, typer.Option("--by", metavar="placement|artefact|K", help="What is left out together; K random folds.")
     ] = "placement",
@@ -27,20 +27,21 @@ def cross_validate(
 
     Example: [bold]ulna cross-validate study.toml --by placement -o out[/bold]
     """
-    import ulna
+    from ulna.calibration.cross_validate import FILES
+    from ulna.calibration.cross_validate import cross_validate as run_cross_validate
     from ulna.cli import output
-    from ulna.cross_validate import FILES
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.cross_validation import cross_validation_report
+    from ulna.cli.printed.cross_validation import cross_validation_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)
-    loaded = ulna.Study.load(study)
+    loaded = Study.load(study)
     if out is not None:
         refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     group: str | int = int(by) if by.isdecimal() else by
     with output.progress_bar() as progress:
-        found = ulna.cross_validate(loaded, group, progress)
+        found = run_cross_validate(loaded, group, progress)
     if out is not None:
         found.save(out, force)
     if as_json:

@@ -6,14 +6,14 @@ from typing import Annotated, Any
 
 import typer
 
-from ulna.cli.options import ArmFile, Force, Json, OutFolder, Study
+from ulna.cli.options import ArmFile, Force, Json, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
 def evaluate(
     arm: ArmFile,
-    study: Study,
+    study: StudyArgument,
     rows: Annotated[
         str | None,
         typer.Option(
@@ -35,22 +35,24 @@ def evaluate(
 
     Example: [bold]ulna evaluate out/result.json fresh.toml[/bold]
     """
-    import ulna
+    from ulna.arm.arm import Arm
+    from ulna.calibration.evaluate import FILES
+    from ulna.calibration.evaluate import evaluate as run_evaluate
     from ulna.cli import output
-    from ulna.evaluate import FILES
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.study import rows_to_judge
-    from ulna.report.evaluation import evaluation_report
+    from ulna.cli.printed.evaluation import evaluation_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.study.file import rows_to_judge
+    from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)
-    judged = ulna.Arm.load(arm)
+    judged = Arm.load(arm)
     wanted: Any = rows or rows_to_judge(study)
-    loaded = ulna.Study.load(study, wanted)
+    loaded = Study.load(study, wanted)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *(file.path for file in loaded.files)])
     with output.progress_bar() as progress:
-        evaluation = ulna.evaluate(judged, loaded, progress)
+        evaluation = run_evaluate(judged, loaded, progress)
     if out is not None:
         evaluation.save(out, force)
     if as_json:

@@ -47,11 +47,11 @@ def urdf(
     Example: [bold]ulna export urdf out/result.json -o calibrated.urdf --template robot.urdf[/bold]
     """
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.export.source import chosen_probe, read_source
-    from ulna.export.template import export_template, remarks, summary
-    from ulna.export.urdf import urdf_text
-    from ulna.files.output import refuse_inputs, write_file
+    from ulna.exchange.export.source import chosen_probe, read_source
+    from ulna.exchange.export.template import export_template, remarks, summary
+    from ulna.exchange.export.urdf import urdf_text
+    from ulna.formats.output import refuse_inputs, write_file
+    from ulna.ground.errors import UlnaInputError
 
     for option, value in (("--tip-link", tip_link), ("--base-link", base_link), ("--probe", probe)):
         if template is None and value is not None:
@@ -94,9 +94,9 @@ def dh(
     Example: [bold]ulna export dh out/result.json -o table.csv --convention modified-dh --angle-unit deg[/bold]
     """
     from ulna.cli import output
-    from ulna.export.dh import dh_table
-    from ulna.export.source import read_source
-    from ulna.files.output import refuse_inputs, write_file
+    from ulna.exchange.export.dh import dh_table
+    from ulna.exchange.export.source import read_source
+    from ulna.formats.output import refuse_inputs, write_file
 
     one_of("--convention", convention, ("dh", "modified-dh"))
     one_of("--length-unit", length_unit, ("mm", "m", "in"))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ulna.cli.options import Json, Study
+from ulna.cli.options import Json, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
-def identify(study: Study, as_json: Json = False) -> None:
+def identify(study: StudyArgument, as_json: Json = False) -> None:
     """Say what these readings can and cannot determine, without fitting.
 
     Each lost direction is named as a combination of parameters, with its cause and a remedy. The answer is for the
@@ -15,12 +15,13 @@ def identify(study: Study, as_json: Json = False) -> None:
 
     Example: [bold]ulna identify study.toml[/bold]
     """
-    import ulna
+    from ulna.calibration.identify import identify as run_identification
     from ulna.cli import output
-    from ulna.report.identification import identification_report
+    from ulna.cli.printed.identification import identification_report
+    from ulna.study.study import Study
 
-    loaded = ulna.Study.load(study)
-    found = ulna.identify(loaded)
+    loaded = Study.load(study)
+    found = run_identification(loaded)
     if as_json:
         output.print_json({"format": "ulna-identification/1", **found.as_dict()})
     else:

@@ -45,7 +45,7 @@ def mukca(
 
     Example: ulna import mukca kinematics_calibration/panda_1 -o panda_1
     """
-    from ulna.importers.mukca import import_mukca
+    from ulna.exchange.importers.mukca import import_mukca
 
     counts = import_mukca(folder, out, urdf, tip_link, length, parquet, drop_copies, force)
     places = ", ".join(f"{name} {count}" for name, count in counts.items())
@@ -75,7 +75,7 @@ def ipa_ur10(
 
     Example: ulna import ipa-ur10 Series_B/measurements_joint_configurations.csv -o ur10 --fit 300 --spread
     """
-    from ulna.importers.ipa import import_ipa_ur10
+    from ulna.exchange.importers.ipa import import_ipa_ur10
 
     fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, force)
     _say(f"{out}: {fitted} readings to fit (study.toml), {held_out} held out{' (held-out.toml)' * bool(held_out)}.")
@@ -99,7 +99,7 @@ def urdf(
 
     Example: ulna import urdf iiwa14.urdf -o arm.toml --tip-link tool0
     """
-    from ulna.importers.urdf import import_urdf
+    from ulna.exchange.importers.urdf import import_urdf
 
     found = import_urdf(file, out, tip_link, base_link, force)
     _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe 'ball' at link '{found.chain.tip_link}'.")
@@ -135,7 +135,7 @@ def dh(
 
     Example: ulna import dh maker.csv -o arm.toml --convention modified-dh --length-unit mm --angle-unit deg
     """
-    from ulna.importers.dh import import_dh
+    from ulna.exchange.importers.dh import import_dh
 
     one_of("--convention", convention, ("dh", "modified-dh"))
     for option, unit, known in (

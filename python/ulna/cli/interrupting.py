@@ -47,7 +47,7 @@ def _watch(hear: int, answered: threading.Event) -> None:
 
 
 def _end_at_once() -> None:
-    output = sys.modules.get("ulna.files.output")
+    output = sys.modules.get("ulna.formats.output")
     if output is not None:
         output.MOVING.acquire()  # a result on its way to its place arrives; none leaves after this
     say_interrupted()
@@ -61,7 +61,7 @@ def leave_interrupted() -> NoReturn:
     string was being executed, as dataclasses do, even if somebody caught it (CPython 3.11). And an interrupt that
     comes just as a `with` is entered leaves the clean-up to the garbage collector.
     """
-    output = sys.modules.get("ulna.files.output")
+    output = sys.modules.get("ulna.formats.output")
     for staged in list(output.UNDER_WAY) if output is not None else ():
         if staged.is_dir():
             shutil.rmtree(staged, ignore_errors=True)

@@ -60,15 +60,16 @@ def measure(
     Columns q1 … qn; id and probe are kept where they are. With a result.json as ARM come the standard uncertainties
     u_x, u_y, u_z, from the calibration and, where its study stated it, the encoders' noise; they are left empty where
     a point depends on what the calibration could not determine, and stderr says why. An arm whose links grow with
-    temperature needs a column temperature, or --temperature. --json prints one object per
+    temperature needs a column temperature, or --temperature; one whose joints have backlash the columns approach1, ….
+    --json prints one object per
     point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole.
 
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
     """
     from ulna.cli import output
-    from ulna.files.layout import Layout
-    from ulna.measure import measure as measure_to_file
-    from ulna.measure import measure_to_stream
+    from ulna.formats.layout import Layout
+    from ulna.measuring.measure import measure as measure_to_file
+    from ulna.measuring.measure import measure_to_stream
 
     choices: Any = {"angle": angle, "units": units, "temperature_c": temperature, "covariance": covariance}
     table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-Study = Annotated[Path, typer.Argument(metavar="STUDY", help="The study file (TOML).", show_default=False)]
+StudyArgument = Annotated[Path, typer.Argument(metavar="STUDY", help="The study file (TOML).", show_default=False)]
 ArmFile = Annotated[
     Path, typer.Argument(metavar="ARM", help="An arm.toml, or the result.json of a calibration.", show_default=False)
 ]
@@ -29,7 +29,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print the machine form on st
 
 def one_of(option: str, value: str, known: tuple[str, ...]) -> None:
     """Raises UlnaInputError for a word that an option does not know."""
-    from ulna.errors import UlnaInputError, nearest
+    from ulna.ground.errors import UlnaInputError, nearest
 
     if value not in known:
         hint = nearest(value, known)

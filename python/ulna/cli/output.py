@@ -10,12 +10,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from rich.console import Console, RenderableType
-from rich.measure import Measurement
 from rich.table import Table
 
 Progress = Callable[[str, int, int], None]
 
 _PROGRESS_AFTER_S = 1.0
+_AS_WIDE_AS_IT_IS = 10_000
+"""Room for any table; one that does not expand takes what it needs."""
 
 
 class _Out(Console):
@@ -37,12 +38,11 @@ def print_json(document: Mapping[str, Any]) -> None:
 
 def print_renderable(*parts: RenderableType) -> None:
     """On stdout. Where a table is wider than the terminal its lines run over: no number is ever cut or broken."""
-    console = _Out(file=sys.stdout, highlight=False)
+    narrow = _Out(file=sys.stdout, highlight=False)
+    wide = _Out(file=sys.stdout, highlight=False, width=_AS_WIDE_AS_IT_IS)
     for part in parts:
-        width = console.width
-        if isinstance(part, Table) and all(column.no_wrap for column in part.columns):
-            width = max(width, Measurement.get(console, console.options.update(max_width=10_000), part).maximum)
-        _Out(file=sys.stdout, highlight=False, width=width).print(part, crop=False)
+        whole = isinstance(part, Table) and all(column.no_wrap for column in part.columns)
+        (wide if whole else narrow).print(part, crop=False)
 
 
 def print_names(what: str, descriptions: Mapping[str, str]) -> None:

@@ -29,22 +29,23 @@ def plan(
 
     Example: [bold]ulna plan arm.toml plan.toml -o planned[/bold]
     """
-    import ulna
+    from ulna.arm.arm import Arm
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.plan import load_plan_spec
-    from ulna.planning.written import FILES
-    from ulna.report.plan import plan_report
+    from ulna.cli.printed.plan import plan_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.planning.file import load_plan_spec
+    from ulna.planning.outcome import FILES
+    from ulna.planning.plan import plan as run_plan
     from ulna.work.pieces import workers_at
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
-    nominal = ulna.Arm.load(arm)
+    nominal = Arm.load(arm)
     asked = load_plan_spec(spec, nominal)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *asked.files])
     with workers_at(dask) as workers, output.progress_bar() as progress:
-        found = ulna.plan(nominal, asked, progress, workers=workers, keep=keep)
+        found = run_plan(nominal, asked, progress, workers=workers, keep=keep)
     if out is not None:
         found.save(out, force)
     if as_json:

@@ -74,11 +74,11 @@ def report(
     Example: [bold]ulna report out/result.json --html -o report.html[/bold]
     """
     from ulna.cli import output
-    from ulna.document.gather import gather
-    from ulna.document.languages import LANGUAGES
-    from ulna.document.written import targets, write_report
+    from ulna.documents.gather import gather
+    from ulna.documents.languages.languages import LANGUAGES
+    from ulna.documents.write import targets, write_report
 
-    one_of("--language", language, LANGUAGES)
+    one_of("--language", language, tuple(LANGUAGES))
     formats = [name for name, asked in (("html", as_html), ("pdf", as_pdf)) if asked]
     wanted = targets(out, formats or ["html"], force)
     with output.progress_bar() as progress:

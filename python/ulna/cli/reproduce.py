@@ -61,7 +61,7 @@ def reproduce(
     Example: [bold]ulna reproduce cheng2011 -o out/cheng2011[/bold]
     """
     from ulna.cli import output
-    from ulna.errors import UlnaInputError, nearest
+    from ulna.ground.errors import UlnaInputError, nearest
     from ulna.reproduce import STUDIES
 
     if name is None:

@@ -25,7 +25,7 @@ def guard(command: Command) -> Command:
 
     @functools.wraps(command)
     def guarded(*args: Any, **kwargs: Any) -> None:
-        from ulna.errors import InputWarning, UlnaInputError
+        from ulna.ground.errors import InputWarning, UlnaInputError
 
         try:
             with prompt_interrupts(), warnings.catch_warnings():

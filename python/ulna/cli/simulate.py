@@ -30,12 +30,12 @@ def simulate(
 
     Example: [bold]ulna simulate spec.toml -o virtual && ulna calibrate virtual/study.toml[/bold]
     """
-    import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.simulation import load_simulation
-    from ulna.report.simulation import simulation_report
-    from ulna.virtual.written import names_for
+    from ulna.cli.printed.simulation import simulation_report
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.simulation.file import load_simulation
+    from ulna.simulation.simulate import simulate as run_simulate
+    from ulna.simulation.study_files import names_for
 
     simulation = load_simulation(spec)
     if seed is not None:
@@ -45,7 +45,7 @@ def simulate(
         refuse_inputs((out / name for name in names), simulation.files)
         check_output(out, names, force)  # before the long work
     with output.progress_bar() as progress:
-        simulated = ulna.simulate(simulation, progress)
+        simulated = run_simulate(simulation, progress)
     if out is not None:
         simulated.save(out, force)
     if as_json:

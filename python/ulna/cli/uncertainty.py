@@ -11,7 +11,7 @@ from ulna.cli.options import Dask, Force, Json, Keep, OutFolder
 from ulna.cli.running import guard
 
 if TYPE_CHECKING:
-    import ulna
+    from ulna.study.study import Study
 
 FILE = "uncertainty.json"
 
@@ -59,12 +59,13 @@ def uncertainty(
 
     Example: [bold]ulna uncertainty out/result.json length.toml[/bold]
     """
-    import ulna
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.files.volume import is_volume
-    from ulna.uncertainty.pictures import FILES as MAP_FILES
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.errors import UlnaInputError
+    from ulna.study.study import Study
+    from ulna.uncertainties.plots import FILES as MAP_FILES
+    from ulna.uncertainties.uncertainty import volume_uncertainty
+    from ulna.uncertainties.volume_file import is_volume
 
     if trials < 0 or seed < 0:
         raise UlnaInputError("options --trials and --seed: expected numbers of 0 or more. Correct them.")
@@ -74,7 +75,7 @@ def uncertainty(
         check_output(out, names, force)
         refuse_inputs([out / name for name in names], [result, task, *([] if performance is None else [performance])])
     if not everywhere:
-        repeated = None if study is None else ulna.Study.load(study)
+        repeated = None if study is None else Study.load(study)
         _measured(result, task, repeated, performance, trials, seed, dask, keep, out, force, as_json)
         return
     if study is not None or keep is not None:
@@ -82,15 +83,13 @@ def uncertainty(
             f"{task}: a map over the volume is of the first order and quick; expected it without --study and --keep. "
             "Leave them out."
         )
-    from ulna.report.volume import volume_report
-    from ulna.uncertainty.pictures import save_volume
-    from ulna.uncertainty.zones import as_dict
+    from ulna.cli.printed.volume import volume_report
+    from ulna.uncertainties.plots import save_volume
+    from ulna.uncertainties.zones import as_dict
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:
-        found = ulna.volume_uncertainty(
-            result, task, performance=performance, seed=seed, workers=workers, progress=progress
-        )
+        found = volume_uncertainty(result, task, performance=performance, seed=seed, workers=workers, progress=progress)
     if out is not None:
         save_volume(found, out, force)
     if as_json:
@@ -107,7 +106,7 @@ def uncertainty(
 def _measured(
     result: Path,
     task: Path,
-    repeated: ulna.Study | None,
+    repeated: Study | None,
     performance: Path | None,
     trials: int,
     seed: int,
@@ -120,14 +119,14 @@ def _measured(
     """One measurement."""
     import json
 
-    import ulna
     from ulna.cli import output
-    from ulna.files.output import output_folder
-    from ulna.report.uncertainty import uncertainty_report
+    from ulna.cli.printed.uncertainty import uncertainty_report
+    from ulna.formats.output import output_folder
+    from ulna.uncertainties.uncertainty import uncertainty as run_uncertainty
     from ulna.work.pieces import workers_at
 
     with workers_at(dask) as workers, output.progress_bar() as progress:
-        found = ulna.uncertainty(
+        found = run_uncertainty(
             result,
             task,
             study=repeated,

@@ -50,7 +50,7 @@ def verify(
 
     Example: [bold]ulna verify --make-plan iso-10360-12 -o to-measure[/bold]
     """
-    from ulna.errors import UlnaInputError
+    from ulna.ground.errors import UlnaInputError
 
     given = files or []
     if make_plan is not None:
@@ -67,17 +67,17 @@ def verify(
 
 
 def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -> None:
-    import ulna
     from ulna.cli import output
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.report.verification import verification_report
+    from ulna.cli.printed.verification import verification_report
+    from ulna.formats.output import check_output, refuse_inputs
     from ulna.verification.verify import FILE, PICTURES, TABLE
+    from ulna.verification.verify import verify as run_verify
 
     *arm, plan = files
     every = (FILE, TABLE, *PICTURES)
     if out is not None:
         check_output(out, every, force)
-    found = ulna.verify(plan, arm[0] if arm else None)
+    found = run_verify(plan, arm[0] if arm else None)
     if out is not None:
         read = [each.path for parts in found.plan.touches.values() for each in parts]
         refuse_inputs((out / name for name in every), [*files, found.plan.profile.path, *read])
@@ -107,11 +107,11 @@ def _make(
 ) -> None:
     import math
 
-    import ulna
+    from ulna.arm.arm import Arm
     from ulna.cli import output
-    from ulna.errors import UlnaInputError
-    from ulna.files.output import check_output, refuse_inputs
-    from ulna.verification.planning import FILES, make_test_plan, play_test_plan
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.errors import UlnaInputError
+    from ulna.verification.test_plan import FILES, make_test_plan, play_test_plan
 
     if len(files) > 1:
         raise UlnaInputError(
@@ -126,11 +126,11 @@ def _make(
     check_output(out, FILES, force)
     own = Path(profile)
     refuse_inputs((out / name for name in FILES), [*files, *([] if play is None else [play]), own])
-    arm = ulna.Arm.load(files[0]) if files else None
+    arm = Arm.load(files[0]) if files else None
     if play is None:
         made = make_test_plan(profile, arm)
     else:
-        truth = ulna.Arm.load(play)
+        truth = Arm.load(play)
         if arm is not None and arm.n != truth.n:
             raise UlnaInputError(
                 f"{play}: the playing arm has {truth.n} joints, {files[0]} has {arm.n}; expected as many. Name another."

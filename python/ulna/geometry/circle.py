@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.clouds import Clouds, peak_to_valley
 from ulna.geometry.settling import settle, solved
-
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
+from ulna.ground.arrays import F64, Bool
+from ulna.ground.errors import UlnaInputError
 
 LEAST = 3
 """Points that determine a circle."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
-
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
 
 #: extents of a set along its principal directions, over the largest, below which it has no extent there: what rounding
 #: leaves of points with coordinates a thousand times their distance apart
@@ -90,6 +89,11 @@ class Clouds:
     def numbers(self, values: F64) -> F64:
         """(T,) back to (...,)."""
         return values.reshape(self.shape)
+
+    def one_each(self, values: ArrayLike) -> F64:
+        """A number, or (..., N), as (T, N)."""
+        count = (*self.shape, self.count)
+        return np.broadcast_to(np.asarray(values, dtype=np.float64), count).reshape(len(self.at), self.count)
 
     def each(self, values: F64) -> F64:
         """(T, N) back to (..., N)."""

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ulna.geometry.clouds import Clouds
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.ground.arrays import F64
 
 FEW = 6
 """Points of which all pairs, triples and quadruples are tried at once."""

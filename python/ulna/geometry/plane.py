@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ulna.geometry.clouds import Clouds, peak_to_valley
-
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
 
 LEAST = 3
 """Points that determine a plane."""

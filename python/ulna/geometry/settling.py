@@ -8,11 +8,8 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Bool = NDArray[np.bool_]
+from ulna.ground.arrays import F64, I64, Bool
 
 ROUNDS = 200
 """Steps at the most. A good start needs 3 to 6; a flat cap with noise some tens."""

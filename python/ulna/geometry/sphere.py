@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.clouds import Clouds, peak_to_valley
 from ulna.geometry.settling import settle, solved
-
-F64 = NDArray[np.float64]
-Bool = NDArray[np.bool_]
+from ulna.ground.arrays import F64, Bool
+from ulna.ground.errors import UlnaInputError
 
 LEAST = 4
 """Points that determine a sphere."""
@@ -29,16 +27,18 @@ class Sphere:
     radius_mm: F64
     """(...,)"""
     residuals_mm: F64
-    """(..., N) distance from the centre minus the radius: positive is outside."""
+    """(..., N) distance from the centre minus the radius (and the offset): positive is outside."""
 
     @property
     def form_mm(self) -> F64:
-        """(...,) largest minus smallest distance of a point from the centre."""
+        """(...,) largest minus smallest distance of a point from the surface."""
         return peak_to_valley(self.residuals_mm)
 
 
-def fit_sphere(points_mm: ArrayLike, what: str = "sphere") -> Sphere:
+def fit_sphere(points_mm: ArrayLike, what: str = "sphere", offsets_mm: ArrayLike = 0.0) -> Sphere:
     """(..., N, 3) points, N ≥ 4 → the least-squares sphere of each set; `what`: how messages call it.
+
+    offsets_mm, a number or (..., N): how much farther out than the surface each point is, such as a ball's radius.
 
     An algebraic fit starts it (linear in centre and radius² - centre²; Kåsa 1976), Gauss–Newton on the distances ends
     it. Raises UlnaInputError for fewer than four points, for points on a plane, and where no sphere is nearest.
@@ -46,8 +46,9 @@ def fit_sphere(points_mm: ArrayLike, what: str = "sphere") -> Sphere:
     clouds = Clouds.of(points_mm, LEAST, what)
     advice = "A sphere needs points that lie on no plane: spread them over the ball, or check the file."
     extents, _ = clouds.need(3, "on a plane", advice)
-    surface = _Ball(clouds.at)
-    state, settled = settle(surface, _started(clouds.at))
+    offsets = clouds.one_each(offsets_mm) / clouds.size_mm[:, None]
+    surface = _Ball(clouds.at, offsets)
+    state, settled = settle(surface, _started(clouds.at, offsets))
     lost = ~settled | ~np.isfinite(state).all(axis=1) | (np.abs(state[:, 3]) > FARTHEST)
     if lost.any():
         k = int(np.argmax(lost))
@@ -64,25 +65,26 @@ def fit_sphere(points_mm: ArrayLike, what: str = "sphere") -> Sphere:
     )
 
 
-def _started(at: F64) -> F64:
+def _started(at: F64, offsets: F64) -> F64:
     """(T, 4) centre and radius of the algebraic fit."""
     linear = np.concatenate([2.0 * at, np.ones((*at.shape[:2], 1))], axis=2)
     found = solved(linear, (at**2).sum(axis=2))
     centre = found[:, :3]
     radius = np.sqrt(np.maximum(found[:, 3] + (centre**2).sum(axis=1), 0.0))
-    return np.concatenate([centre, radius[:, None]], axis=1)
+    return np.concatenate([centre, radius[:, None] - offsets.mean(axis=1, keepdims=True)], axis=1)
 
 
 @dataclass(frozen=True)
 class _Ball:
-    """A `Surface`: distances from the centre minus the radius."""
+    """A `Surface`: distances from the centre minus the radius and what each point is farther out."""
 
     at: F64
+    offsets: F64
 
     def residuals(self, state: F64, own: Bool) -> F64:
         away = self.at[own] - state[:, None, :3]
         distance: F64 = np.linalg.norm(away, axis=2)
-        return distance - state[:, 3:]
+        return distance - state[:, 3:] - self.offsets[own]
 
     def jacobian(self, state: F64, own: Bool) -> F64:
         away = self.at[own] - state[:, None, :3]

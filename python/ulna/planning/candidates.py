@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.plan_spec import PlanSpec
+from ulna.ground.arrays import F64, I64
+from ulna.planning.spec import PlanSpec
 from ulna.planning.touchable import touchable
-from ulna.virtual.places import places
-from ulna.virtual.postures import Mover
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.simulation.mover import Mover
+from ulna.simulation.places import places
 
 POSTURES = 10
 """At each feature in a place, for each touch that a measurement takes of it."""

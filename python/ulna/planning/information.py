@@ -10,16 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
+from ulna.arm.arm import Arm
+from ulna.calibration.observability import indices
+from ulna.geometry.rigid import turned
+from ulna.ground.arrays import F64, I64
 from ulna.planning.candidates import Candidates
-from ulna.planning.touchable import touchable, turned
-from ulna.study import Study
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
+from ulna.planning.spec import PlanSpec
+from ulna.planning.touchable import touchable
+from ulna.study.study import Study
 
 RANK_TOLERANCE = 1e-9
 """Singular values below this part of the largest are zero, as in the core."""
@@ -115,7 +114,7 @@ def taken_rows(spec: PlanSpec, study: Study, arm: Arm, free: I64) -> F64:
             at = arm.core.tip(np.ascontiguousarray(group.q_rad[rows]), group.probe[rows])
             if len(np.unique(features[group.feature[rows]], axis=0)) == 1:
                 at = np.broadcast_to(at.mean(axis=0), at.shape)
-            elif group.artefact.kind == "bar":
+            elif np.linalg.matrix_rank(features - features.mean(axis=0), tol=1e-9) == 1:  # features in a line
                 line = np.linalg.svd(at - at.mean(axis=0))[2][0]
                 at = at.mean(axis=0) + ((at - at.mean(axis=0)) @ line)[:, None] * line
             parts.append(reduced(wj[None], w[None], at[None], group.artefact.frame == "free")[0])
@@ -176,20 +175,3 @@ def observability(rows: F64, coordinates: Coordinates) -> dict[str, float]:
     """`indices` of a plan's rows (R, free), columns scaled by their norm over the candidates."""
     size = np.linalg.norm(coordinates.to_scaled, axis=0)
     return indices(np.linalg.svd(rows @ coordinates.to_free / size, compute_uv=False), len(rows))
-
-
-def indices(values: F64, rows: int) -> dict[str, float]:
-    """O1 to O5, after Sun and Hollerbach (ICRA 2008), of a Jacobian with so many rows.
-
-    With σ₁ ≥ … ≥ σ_L its singular values over the L determined directions, values (L,), and R rows:
-    O1 = (σ₁ … σ_L)^(1/L) / √R (Borm and Menq), O2 = σ_L / σ₁ (Driels and Pathre), O3 = σ_L (Nahvi et al.),
-    O4 = σ_L² / σ₁ (Nahvi and Hollerbach), O5 = 1 / Σ 1/σ_i (Sun and Hollerbach). All are the better the larger.
-    """
-    first, last = float(values[0]), float(values[-1])
-    return {
-        "O1": float(np.exp(np.log(values).mean()) / np.sqrt(rows)),
-        "O2": last / first,
-        "O3": last,
-        "O4": last**2 / first,
-        "O5": float(1.0 / (1.0 / values).sum()),
-    }

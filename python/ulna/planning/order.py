@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.ground.arrays import F64, I64
 from ulna.planning.candidates import Candidates
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
 
 
 def in_order(chosen: Candidates) -> Candidates:

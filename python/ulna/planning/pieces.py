@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64, I64, Progress
 from ulna.planning.candidates import Candidates, draw, joined, places_of
 from ulna.planning.information import candidate_rows
-from ulna.virtual.postures import Mover
+from ulna.planning.spec import PlanSpec
+from ulna.simulation.mover import Mover
 from ulna.work.pieces import Workers
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Progress = Callable[[str, int, int], None]
 
 PIECE_PLACES = 50
 """Places in a piece: some tens of milliseconds, and a megabyte of rows."""

@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
-from ulna.planning.asking import check, free_parameters
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64, I64, Progress
+from ulna.ground.errors import UlnaInputError
 from ulna.planning.candidates import EACH, ON_SURFACE, POSTURES, Candidates, combine
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
-from ulna.planning.judged import Tests
 from ulna.planning.order import in_order
+from ulna.planning.outcome import Plan
 from ulna.planning.pieces import draw_all
-from ulna.planning.scene import Figures, Scene
+from ulna.planning.refusals import check, free_parameters
+from ulna.planning.scene import Scene
+from ulna.planning.spec import PlanSpec
+from ulna.planning.targets import Tests
 from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial, carry_out
-from ulna.virtual.postures import Mover, travel_or_limits
+from ulna.simulation.mover import Mover, travel_or_limits
 from ulna.work.pieces import Threads, Workers
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Progress = Callable[[str, int, int], None]
 
 PAPER = 101
 """Bars of Cheng, Yu and Fei (2011), with which a plan is compared."""
@@ -38,56 +33,6 @@ TRIAL_SETS = 5
 """Random sets that a trial's calibrations on random measurements take turns with."""
 PLACED = 8
 """Measurements that stand for a place where places are chosen first."""
-
-
-@dataclass(frozen=True)
-class Plan:
-    """Measurements to take, in their order."""
-
-    arm: Arm
-    spec: PlanSpec
-    chosen: Candidates
-    """In order of work."""
-    planned: Figures
-    random: Figures
-    """The mean of random sets of the same size."""
-    paper: Figures | None
-    """The mean of 101 random measurements; None where they do not determine what is free."""
-    observability: dict[str, float]
-    """O1 to O5."""
-    random_observability: dict[str, float]
-    curve: list[tuple[int, float, float]]
-    """Number, then the root mean square length uncertainty (mm) of the best choice of so many and of random ones."""
-    trial: Trial | None
-    """The same by simulation; None where none was asked for, or where readings were taken already."""
-    determined: int
-    """Directions of the parameters that the candidates determine, of `free`."""
-    free: int
-    candidates: int
-    seconds: dict[str, float]
-    """Of drawing candidates with their rows, of what they are judged by, and of choosing."""
-
-    @property
-    def q_rad(self) -> F64:
-        """(choose, K, touches, n) encoder angles."""
-        return self.chosen.poses(np.arange(len(self.chosen)))
-
-    @property
-    def gain(self) -> float:
-        """By which part the expected length uncertainty is smaller than that of random measurements."""
-        return 1.0 - self.planned.u_length_mm / self.random.u_length_mm
-
-    def save(self, folder: str | Path, force: bool = False) -> None:
-        """Write plan.csv, plan.json and the pictures. Raises UlnaInputError."""
-        from ulna.planning.written import save
-
-        save(self, Path(folder), force)
-
-    def as_dict(self) -> dict[str, Any]:
-        """`plan.json`: JSON types only."""
-        from ulna.planning.written import as_dict
-
-        return as_dict(self)
 
 
 def plan(
@@ -184,7 +129,7 @@ def _few_places(
     if what.outward is not None:
         postures = ON_SURFACE * POSTURES
     points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
-    q_rad, reached = mover.on_points(points, np.full(len(points), probe), None, int(rng.integers(2**63)))
+    q_rad, reached = mover.on_points(points, np.full(len(points), probe), {}, int(rng.integers(2**63)))
     q_rad = q_rad.reshape(len(best), features, postures, -1)
     # a posture that was not found again gives way to one that was: they are all of one feature
     for k, j in zip(*np.nonzero(~reached.reshape(q_rad.shape[:3]).all(axis=2)), strict=True):

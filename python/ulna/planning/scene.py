@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
-from ulna.plan_spec import PlanSpec
+from ulna.ground.arrays import F64, I64, Progress
+from ulna.ground.errors import UlnaInputError
 from ulna.planning.information import Coordinates
-from ulna.planning.judged import Tests
-
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Progress = Callable[[str, int, int], None]
+from ulna.planning.spec import PlanSpec
+from ulna.planning.targets import Tests
 
 RANDOM = 20
 """Random sets that a figure of random choice is the mean of."""
@@ -70,7 +65,7 @@ class Scene:
 
     def choose(self, count: int, directions: F64 | None, progress: Progress | None = None) -> I64:
         """Numbers of the candidates that make the criterion small. Raises UlnaInputError for too few."""
-        from ulna import _core
+        import ulna._core as _core
 
         spec = self.spec
         try:

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
-from ulna.simulation import Touching
-from ulna.study import SURFACES
-from ulna.virtual.places import Standing
-from ulna.virtual.touches import touches_of
-
-F64 = NDArray[np.float64]
+from ulna.arm.arm import Arm
+from ulna.artefacts.kinds import kind_of
+from ulna.ground.arrays import F64
+from ulna.planning.spec import PlanSpec
+from ulna.simulation.places import Standing
+from ulna.simulation.spec import Touching
+from ulna.simulation.touches import touches_of
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ class Touchable:
     outward: F64 | None = None
     """(K, 3) away from a surface, in the artefact's own frame; None for features."""
     unknowns: F64 | None = None
-    """(K, 3) what moves a surface's residuals beside the arm: its centre, or its plane."""
+    """(K, e) what moves a surface's residuals beside the arm: its centre, or its plane."""
 
     @property
     def pairs(self) -> bool:
@@ -46,26 +44,11 @@ class Touchable:
 def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
     """Of the plan's artefact."""
     artefact = spec.artefact
-    if artefact.kind not in SURFACES:
+    if not kind_of(artefact).scattered:
         at_mm = np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
         return Touchable(at_mm, tuple(artefact.features), spec.touches)
     spread = touches_of(Touching(artefact, 1, spec.touches), artefact, arm, [probe])
     at_mm, outward = spread.centre_mm, spread.off
-    unknowns = outward
-    if artefact.kind == "plane":
-        unknowns = np.column_stack([np.ones(len(at_mm)), at_mm[:, :2] / np.abs(at_mm[:, :2]).max()])
+    unknowns = kind_of(artefact).moved_by(spread)
     names = tuple(str(number + 1) for number in range(len(at_mm)))
     return Touchable(at_mm, names, 1, outward, unknowns)
-
-
-def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
-    """(K, 3) directions in the frame of (K, 3) places → (S, K, 3) where the places are (S, K, 3): the rotation that
-    takes them there (Kabsch's, by singular values)."""
-    middle = own - own.mean(axis=0)
-    there = placed_mm - placed_mm.mean(axis=1, keepdims=True)
-    left, _, right = np.linalg.svd(np.einsum("ki,skj->sij", middle, there))
-    sign = np.ones(left.shape[:2])
-    sign[:, 2] = np.sign(np.linalg.det(left @ right))
-    rotation = left @ (sign[:, :, None] * right)
-    found: F64 = directions @ rotation
-    return found

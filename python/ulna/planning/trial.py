@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna.files.arm import arm_toml
-from ulna.model import Arm
-from ulna.plan_spec import PlanSpec
-from ulna.work.kept import Arrays, each_once, sha256_of
+from ulna.arm.arm import Arm
+from ulna.arm.file import arm_toml
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
+from ulna.planning.spec import PlanSpec
+from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
 
 if TYPE_CHECKING:
-    from ulna import _core
+    import ulna._core as _core
 
-F64 = NDArray[np.float64]
-I64 = NDArray[np.int64]
-Progress = Callable[[str, int, int], None]
 
 PIECE_RUNS = 50
 """Calibrations in a piece: some tenths of a second where bars are touched at both ends."""
@@ -49,27 +48,27 @@ class Trial:
 
 def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Problem:
     """The core's problem of measurements (count, K, t, n), each a placement of its own, readings exact."""
-    from ulna import _core
+    import ulna._core as _core
 
     count, features, touches, n = q_rad.shape
     per = features * touches
     problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
-    artefact = spec.artefact
-    flat = np.ascontiguousarray(q_rad.reshape(-1, n))
-    probes = np.full(count * per, probe, dtype=np.int64)
-    standing = np.repeat(np.arange(count), per)
+    kind = kind_of(spec.artefact)
+    each = np.tile(np.repeat(np.arange(features), touches), count)
+    readings = Readings(
+        # as its certificate has it: what is uncertain of it is not what a plan can mend
+        artefact=replace(spec.artefact, u_mm=0.0, feature_u_mm=None, fitted=False),
+        q_rad=np.ascontiguousarray(q_rad.reshape(-1, n)),
+        p_rad=None,
+        length_mm=None,
+        probe=np.full(count * per, probe, dtype=np.int64),
+        feature=each if kind.named else np.zeros_like(each),
+        placement=Labels(np.repeat(np.arange(count), per), [str(number) for number in range(count)]),
+        row=np.arange(1, count * per + 1),
+        file=np.zeros(count * per, dtype=np.int64),
+    )
     balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
-    rows: dict[str, Any] = {"q_rad": flat, "probe": probes, "placement": standing}
-    if artefact.kind == "sphere":
-        assert artefact.diameter_mm is not None
-        diameter = [("diameter", artefact.diameter_mm, 0.0, False)]
-        problem.add("sphere", artefact.name, dimensions=diameter, balls_mm=balls_mm, inside=artefact.inside, **rows)
-    elif artefact.kind == "plane":
-        problem.add("plane", artefact.name, balls_mm=balls_mm, **rows)
-    else:
-        points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
-        feature = np.tile(np.repeat(np.arange(features), touches), count)
-        problem.add("points", artefact.name, features_mm=points_mm, frame=artefact.frame, feature=feature, **rows)
+    kind.enter(problem, readings, balls_mm, [arm.conditions(len(readings))])
     return problem
 
 
@@ -125,13 +124,13 @@ def _piece(
     arm: Arm,
     spec: PlanSpec,
     probe: int,
-    hold: NDArray[np.bool_],
+    hold: Bool,
     sets: list[F64],
     bars_rad: F64,
     piece: tuple[int, int, int],
 ) -> Arrays:
     """Which set, and runs (first, count): the mean square error (mm²) of the bars' lengths by each calibrated arm."""
-    from ulna import _core
+    import ulna._core as _core
 
     number, first, count = piece
 

@@ -9,14 +9,14 @@ from typing import TypeVar
 
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.touches import Touches
-from ulna.files.verify_tables import BallTable, CalibratedLengthTable
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.budget import Budget, Surroundings
+from ulna.verification.certified import BallTable, CalibratedLengthTable, CertifiedTable
 from ulna.verification.figures.figure import Definition
 from ulna.verification.outcome import Single
+from ulna.verification.touches import Touches
 
-Table = TypeVar("Table", BallTable, CalibratedLengthTable)
+Table = TypeVar("Table", bound=CertifiedTable)
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Bench:
     """Artefacts and surroundings of a verify file."""
 
     path: Path
-    artefacts: Mapping[str, BallTable | CalibratedLengthTable]
+    artefacts: Mapping[str, CertifiedTable]
     mm: float
     """In the file's length unit."""
     surroundings: Surroundings

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ulna.files.profile_tables import DecisionTable, Rule
+from ulna.verification.limits import DecisionTable, Rule
 
 Verdict = Literal["pass", "fail", "undecided"]
 

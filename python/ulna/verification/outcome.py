@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from ulna.verification.budget import Budget
 from ulna.verification.decision import Decided, Limit, Verdict, worst_verdict
 from ulna.verification.figures.figure import Definition
-
-FORMAT = "ulna-verification/1"
+from ulna.verification.tables import State
 
 
 @dataclass(frozen=True)
@@ -52,20 +50,6 @@ class Judged:
     limit_mm: float | None
     decided: Decided
 
-    def as_dict(self) -> dict[str, Any]:
-        """JSON types only."""
-        single = self.single
-        return {
-            **single.labels.as_dict(),
-            **({} if single.calibrated_mm is None else {"calibrated": single.calibrated_mm}),
-            **({} if single.measured_mm is None else {"measured": single.measured_mm}),
-            "value": single.value_mm,
-            "limit": self.limit_mm,
-            "u": single.budget.u_mm,
-            "guard": self.decided.guard_mm,
-            "verdict": self.decided.verdict,
-        }
-
 
 @dataclass(frozen=True)
 class FigureResult:
@@ -93,36 +77,6 @@ class FigureResult:
         """Of the worst."""
         return self.worst.decided.verdict
 
-    def as_dict(self) -> dict[str, Any]:
-        """As in verification.json."""
-        worst = self.worst
-        u_mm = worst.single.budget.u_mm
-        return {
-            "name": self.definition.name,
-            "key": self.definition.key,
-            "formula": self.definition.formula,
-            "standard": self.definition.standard,
-            "unit": self.definition.unit,
-            "value": worst.single.value_mm,
-            "of": worst.single.labels.as_dict(),
-            "limit": worst.limit_mm,
-            "limit_formula": None if self.limit is None else self.limit.text,
-            "limit_terms": None if self.limit is None else {"a": self.limit.a_mm, "b": self.limit.b},
-            "u": u_mm,
-            "k": self.k,
-            "p": self.p,
-            "expanded": None if u_mm is None else self.k * u_mm,
-            "guard": worst.decided.guard_mm,
-            "verdict": self.verdict,
-            "why": worst.decided.why,
-            "budget": [
-                {"name": each.name, "u": each.u_mm, "formula": each.formula}
-                for each in worst.single.budget.contributors
-            ],
-            "left_out": worst.single.budget.left_out,
-            "individual": [each.as_dict() for each in self.values],
-        }
-
 
 @dataclass(frozen=True)
 class TestResult:
@@ -142,23 +96,12 @@ class TestResult:
         """The worst of its figures."""
         return worst_verdict([figure.verdict for figure in self.figures])
 
-    def as_dict(self) -> dict[str, Any]:
-        """As in verification.json."""
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "readings": self.readings,
-            "verdict": self.verdict,
-            "departures": self.departures,
-            "figures": [figure.as_dict() for figure in self.figures],
-        }
-
 
 @dataclass(frozen=True)
 class StateResult:
     """All tests in one state of the arm."""
 
-    state: str
+    state: State
     tests: list[TestResult]
     departures: list[str]
     """Tests of the profile that were not measured."""
@@ -172,12 +115,3 @@ class StateResult:
     def figures(self) -> dict[str, FigureResult]:
         """By name, in order."""
         return {figure.definition.name: figure for test in self.tests for figure in test.figures}
-
-    def as_dict(self) -> dict[str, Any]:
-        """As in verification.json."""
-        return {
-            "state": self.state,
-            "verdict": self.verdict,
-            "departures": self.departures,
-            "tests": [test.as_dict() for test in self.tests],
-        }

@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import ulna
-from ulna.errors import InputWarning, UlnaInputError, nearest
-from ulna.files.output import output_folder
-from ulna.files.profile_tables import LimitTable, LimitValue
-from ulna.files.touches import Touches, joined
-from ulna.files.units import MM_PER
-from ulna.files.verify import VerifyPlan, load_verify
-from ulna.files.verify_tables import STATES
-from ulna.verification.bench import Bench
-from ulna.verification.budget import Surroundings
+from ulna.formats.output import output_folder
+from ulna.formats.units import MM_PER
+from ulna.ground.arrays import Progress
+from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
-from ulna.verification.kinds.registry import evaluate, figures_of
-from ulna.verification.outcome import FORMAT, FigureResult, Judged, StateResult, TestResult
-
-Progress = Callable[[str, int, int], None]
+from ulna.verification.file import VerifyPlan, load_verify
+from ulna.verification.kinds.registry import kind_of
+from ulna.verification.limits import LimitTable, LimitValue
+from ulna.verification.outcome import FigureResult, Judged, StateResult, TestResult
+from ulna.verification.outcome_tables import verification_file
+from ulna.verification.result_file import VerificationFile
+from ulna.verification.tables import STATES, State
+from ulna.verification.touches import Touches, joined
 
 FILE = "verification.json"
 TABLE = "values.csv"
@@ -53,59 +50,19 @@ class Verification:
             return named
         return self.plan.arms[0].arm.name if self.plan.arms else "not named"
 
+    def file(self) -> VerificationFile:
+        """`verification.json`, lengths in mm."""
+        return verification_file(self.plan, self.arm, self.rule, self.states, self.verdict, self.time)
+
     def as_dict(self) -> dict[str, Any]:
-        """`verification.json`: JSON types only, lengths in mm."""
-        plan, profile = self.plan, self.plan.profile
-        temperature, fixture, mm = plan.file.temperature, plan.file.fixture, plan.file.units.mm
-        return {
-            "format": FORMAT,
-            "arm": self.arm,
-            "verdict": self.verdict,
-            "profile": {
-                "name": profile.file.name,
-                "standard": profile.file.standard,
-                "statement": profile.file.statement,
-                "path": str(profile.path),
-                "sha256": profile.sha256,
-            },
-            "decision": {"rule": self.rule.rule, "text": self.rule.text, "k": self.rule.k, "p": self.rule.p},
-            "environment": {
-                "temperature": None if temperature is None else {"value": temperature.value, "u": temperature.u},
-                "fixture": None if fixture is None else {"u": fixture.u * mm},
-                "range": None if plan.file.range is None else plan.file.range * mm,
-            },
-            "artefacts": [
-                {"name": name, **_in_mm(table.model_dump(exclude_none=True), mm)}
-                for name, table in plan.file.artefact.items()
-            ],
-            "states": [state.as_dict() for state in self.states],
-            "provenance": {
-                "program": "ulna",
-                "version": ulna.__version__,
-                "plan": {"path": str(plan.path), "sha256": plan.sha256},
-                "arms": [{"path": str(each.path), "sha256": each.sha256} for each in plan.arms],
-                "files": [
-                    {
-                        "state": state,
-                        "path": str(each.path),
-                        "sha256": each.sha256,
-                        "rows": len(each.row),
-                        "points": each.source,
-                        "arm_sha256": each.arm_sha256,
-                    }
-                    for state, parts in plan.touches.items()
-                    for each in parts
-                ],
-                "warnings": list(plan.warnings),
-                "time": self.time.isoformat(timespec="seconds"),
-            },
-        }
+        """The same: JSON types only."""
+        return self.file().model_dump(exclude_unset=True)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write verification.json, values.csv and, where lengths were measured, lengths.svg and .png. Raises
         UlnaInputError."""
-        from ulna.verification.pictures import draw_lengths
-        from ulna.verification.written import values_table
+        from ulna.verification.plots import draw_lengths
+        from ulna.verification.values_table import values_table
 
         with output_folder(folder, self.files, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
@@ -127,9 +84,7 @@ def has_lengths(states: list[StateResult]) -> bool:
 
 def lengths_of(state: StateResult) -> list[Judged]:
     """All lengths of a state."""
-    return [
-        judged for test in state.tests if test.kind in ("length", "volumetric") for judged in test.figures[0].values
-    ]
+    return [judged for test in state.tests if kind_of(test.kind).length_errors for judged in test.figures[0].values]
 
 
 def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress | None = None) -> Verification:
@@ -153,16 +108,19 @@ def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress |
     return Verification(stated, rule, found, datetime.now().astimezone())
 
 
-def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]) -> StateResult:
-    bench = _bench(plan)
+def _state(
+    state: State, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]
+) -> StateResult:
+    bench = plan.bench
     parts = {name: own for (name,), own in touches.groups(("test",))}
     tests, departures = [], []
     for name, table in plan.profile.file.test.items():
+        kind = kind_of(table.kind)
         if name not in parts:
-            figures = ", ".join(figure.key for figure in figures_of(table))
+            figures = ", ".join(figure.key for figure in kind.figures(table))
             departures.append(f"test '{name}' ({figures}) was not measured.")
             continue
-        found = evaluate(name, table, parts[name], bench)
+        found = kind.evaluated(name, table, parts[name], bench)
         judged = []
         for definition, singles in found.figures:
             limit = limits.get(definition.key)
@@ -171,25 +129,14 @@ def _state(state: str, touches: Touches, plan: VerifyPlan, rule: DecisionRule, l
                 limit_mm = None if limit is None else limit.at_mm(single.calibrated_mm)
                 values.append(Judged(single, limit_mm, rule.decide(single.value_mm, limit_mm, single.budget.u_mm)))
             judged.append(FigureResult(definition, limit, values, rule.k, rule.p))
-        tests.append(TestResult(name, table.kind, len(parts[name].row), judged, found.departures))
+        tests.append(TestResult(name, kind.name, len(parts[name].row), judged, found.departures))
     return StateResult(state, tests, departures)
-
-
-def _bench(plan: VerifyPlan) -> Bench:
-    file, mm = plan.file, plan.file.units.mm
-    temperature = file.temperature
-    surroundings = Surroundings(
-        None if temperature is None else temperature.value,
-        None if temperature is None else temperature.u,
-        None if file.fixture is None else file.fixture.u * mm,
-    )
-    return Bench(plan.path, file.artefact, mm, surroundings, None if file.range is None else file.range * mm)
 
 
 def _limits(plan: VerifyPlan) -> dict[str, Limit]:
     """By the short name of a figure. Raises UlnaInputError for names that no test gives."""
     profile = plan.profile.file
-    known = [figure.key for table in profile.test.values() for figure in figures_of(table)]
+    known = [figure.key for table in profile.test.values() for figure in kind_of(table.kind).figures(table)]
     found: dict[str, Limit] = {}
     unit = 1.0 if profile.unit is None else MM_PER[profile.unit]
     for limits, mm, path, key in (
@@ -208,8 +155,3 @@ def _limits(plan: VerifyPlan) -> dict[str, Limit]:
 
 def _limit(value: LimitValue, mm: float) -> Limit:
     return Limit(value.a * mm, value.b) if isinstance(value, LimitTable) else Limit(value * mm)
-
-
-def _in_mm(table: dict[str, Any], mm: float) -> dict[str, Any]:
-    lengths = ("diameter", "length", "u", "form")
-    return {key: value * mm if key in lengths else value for key, value in table.items()}

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.ground.arrays import Arrays
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
-
-Arrays = dict[str, NDArray[Any]]
 
 
 def each_once(

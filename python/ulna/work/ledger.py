@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 
 FORMAT = "ulna-job/1"
 JOB = "job.json"

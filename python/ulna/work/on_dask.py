@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ulna.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError
 
 TIMEOUT_S = 10
 """How long the scheduler may take to answer."""

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any, Protocol
 
-from ulna.cores import available_cores
+from ulna.work.cores import available_cores
 
 
 class Workers(Protocol):

@@ -1,6 +1,6 @@
 //! The arm itself, its parameters in their order.
 
-use super::effects::Effects;
+use super::effects::{Effect, Effects};
 use super::joint::{Joint, JointModel};
 use super::probe::Probe;
 use super::unit::Unit;
@@ -161,11 +161,31 @@ impl Arm {
         units
     }
 
+    /// How far a unit of each parameter moves the tip of an arm of some reach at the most, in round figures, mm.
+    pub fn moves_mm(&self, reach_mm: f64) -> Vec<f64> {
+        self.of_each(1.0, reach_mm, |effect| effect.moves_mm(reach_mm))
+    }
+
+    /// Standard uncertainty of each parameter before any reading, where lengths and angles are known so well.
+    pub fn known(&self, length_mm: f64, angle_rad: f64) -> Vec<f64> {
+        self.of_each(length_mm, angle_rad, |effect| effect.known(angle_rad))
+    }
+
+    /// A number for each parameter: of lengths and angles of the geometry, and of every effect.
+    fn of_each(&self, length: f64, angle: f64, of: impl Fn(&dyn Effect) -> f64) -> Vec<f64> {
+        let of_geometry = |unit: &Unit| if *unit == Unit::Rad { angle } else { length };
+        let mut each: Vec<f64> = self.parameter_units()[..self.geometry_count()].iter().map(of_geometry).collect();
+        for effect in self.effects.all() {
+            each.resize(each.len() + effect.values().len(), of(effect));
+        }
+        each
+    }
+
     /// All parameters, in [`Arm::parameter_units`].
     pub fn parameters(&self) -> Vec<f64> {
         let joints = self.joints.iter().flat_map(Joint::parameters);
         let tips = self.probes.iter().flat_map(|p| p.tip_mm);
-        joints.chain(tips).chain(self.effects.all().flat_map(|effect| effect.values())).collect()
+        joints.chain(tips).chain(self.effects.all().flat_map(|effect| effect.values()).copied()).collect()
     }
 
     /// The same arm with other numbers.

@@ -14,7 +14,9 @@ mod unit;
 pub use articulated::Arm;
 #[cfg(test)]
 pub(crate) use articulated::samples;
-pub use effects::{Body, Compliance, Effects, Expansion, Harmonics};
+pub use effects::{
+    Array, Backlash, Body, Compliance, Effect, Effects, Expansion, Harmonics, Lost, Seen, Stated, Unseen,
+};
 pub use joint::{Joint, JointModel};
 pub use probe::Probe;
 pub use unit::Unit;

@@ -14,8 +14,8 @@ pub(crate) const LEAST_NOISE: f64 = 1e-12;
 pub(super) fn check_rows(rows: &Rows, arm: &Arm) -> Result<()> {
     let count = rows.probe.len();
     check_angles("poses", rows.poses, count, arm)?;
-    if let Some(q_rad) = rows.p_rad {
-        check_angles("second poses", Angles { q_rad, warmth_k: rows.poses.warmth_k }, count, arm)?;
+    if let Some(second) = rows.second {
+        check_angles("second poses", second, count, arm)?;
     }
     check_indices("probe", rows.probe, arm.probes().len())?;
     let lengths = [
@@ -84,15 +84,8 @@ fn check_indices(what: &'static str, indices: &[usize], count: usize) -> Result<
 
 fn check_angles(what: &str, angles: Angles, rows: usize, arm: &Arm) -> Result<()> {
     check_count(&format!("the {what}"), angles.q_rad.len(), rows * arm.encoders())?;
-    if ![0, rows, rows * arm.encoders()].contains(&angles.warmth_k.len()) {
-        let (what, got) = (format!("the temperatures of the {what}"), angles.warmth_k.len());
-        return Err(Error::Shape { what, got, expected: rows });
-    }
     if let Some(&value) = angles.q_rad.iter().find(|v| !v.is_finite()) {
         return Err(Error::NotFinite { what: format!("an angle of the {what}"), value });
     }
-    match angles.warmth_k.iter().find(|v| !v.is_finite()) {
-        Some(&value) => Err(Error::NotFinite { what: format!("a temperature of the {what}"), value }),
-        None => Ok(()),
-    }
+    angles.conditions.check(what, rows, arm.encoders())
 }

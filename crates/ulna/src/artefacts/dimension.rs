@@ -2,6 +2,9 @@
 
 use crate::arm::Unit;
 
+/// An instrument that is wrong by a larger part than this is no instrument.
+const SCALE: f64 = 1e-3;
+
 /// A dimension of an artefact that is not known exactly: common to all its readings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dimension {
@@ -19,6 +22,16 @@ pub struct Dimension {
 }
 
 impl Dimension {
+    /// How far a unit of it moves a tip at the most, mm.
+    pub fn moves_mm(&self, reach_mm: f64) -> f64 {
+        if self.unit == Unit::Mm { 1.0 } else { reach_mm }
+    }
+
+    /// How well it is known before any reading, where lengths are known so well.
+    pub fn known(&self, length_mm: f64) -> f64 {
+        if self.unit == Unit::Mm { length_mm } else { SCALE }
+    }
+
     /// Whether it is an unknown of which nothing is known.
     pub fn is_free(&self) -> bool {
         self.fitted && self.u == 0.0

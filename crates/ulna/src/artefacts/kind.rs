@@ -108,7 +108,7 @@ impl<'a> Statement<'a> {
 
     /// What is missing, in words.
     pub fn missing(&self, what: &str) -> Error {
-        Error::Missing { artefact: self.stated.name.into(), kind: self.kind.name, what: what.into() }
+        Error::Lacking { artefact: self.stated.name.into(), kind: self.kind.name, what: what.into() }
     }
 
     /// What has no meaning here, in words.

@@ -6,6 +6,7 @@ use super::noise::{Noise, Weighing};
 use super::readings::Readings;
 use super::residuals::{Unweighted, Whitened};
 use super::writer::Writer;
+use crate::arm::Seen;
 use crate::error::Result;
 use crate::kinematics::Sample;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -167,9 +168,8 @@ impl Readings for Parts {
         self.0.iter().flat_map(|part| part.readings.samples(most * part.readings.len() / self.len())).collect()
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        let ranges = self.0.iter().filter_map(|part| part.readings.warmth_range_k());
-        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+    fn seen(&self) -> Seen {
+        self.0.iter().map(|part| part.readings.seen()).reduce(Seen::and).unwrap_or_default()
     }
 
     fn taken_anew(

@@ -9,6 +9,7 @@ use super::rows::{Eliminated, Layout, MOST_OWN, Place};
 use super::tile::{Directions, TILE, Tile};
 use super::touches::Touches;
 use super::writer::Writer;
+use crate::arm::Seen;
 use crate::error::Result;
 use crate::kinematics::Sample;
 use nalgebra::{DMatrix, Vector3};
@@ -21,13 +22,10 @@ pub(super) struct Group {
     pub dimensions: Vec<Dimension>,
 }
 
-/// What is read of a touch: one number or three.
-pub(super) trait Observed: std::fmt::Debug + Clone + Send + Sync + 'static {
-    /// Equations of a reading.
-    const COMPONENTS: usize;
-
+/// What is read of a touch: `C` numbers, one or three.
+pub(super) trait Observed<const C: usize>: std::fmt::Debug + Clone + Send + Sync + 'static {
     /// All touches as they are seen from some parameters.
-    type Scene<'a>: Scene;
+    type Scene<'a>: Scene<C>;
 
     /// Puts every standing where it fits best.
     fn scene<'a>(&'a self, group: &'a Group, at: At<'a>) -> Self::Scene<'a>;
@@ -70,8 +68,8 @@ pub(super) trait Observed: std::fmt::Debug + Clone + Send + Sync + 'static {
     }
 }
 
-/// Touches where the arm and the artefact are. Of the three numbers of an equation as many count as a reading has.
-pub(super) trait Scene {
+/// Touches where the arm and the artefact are.
+pub(super) trait Scene<const C: usize> {
     /// Along which directions the derivatives are asked for.
     type Directions<'b>: Directions
     where
@@ -90,26 +88,26 @@ pub(super) trait Scene {
     fn off_mm(&self, standing: usize, row: usize) -> Vector3<f64>;
 
     /// A residual as a person reads it, mm.
-    fn residual_mm(&self, standing: usize, row: usize) -> [f64; 3];
+    fn residual_mm(&self, standing: usize, row: usize) -> [f64; C];
 
     /// A weighed residual.
-    fn residual(&self, standing: usize, row: usize) -> [f64; 3];
+    fn residual(&self, standing: usize, row: usize) -> [f64; C];
 
     /// Its derivative with respect to a dimension.
-    fn by_dimension(&self, standing: usize, row: usize, dimension: usize) -> [f64; 3];
+    fn by_dimension(&self, standing: usize, row: usize, dimension: usize) -> [f64; C];
 
     /// Its derivatives with respect to the standing's unknowns.
-    fn by_standing(&self, standing: usize, row: usize, own: &mut [[f64; 3]; MOST_OWN]);
+    fn by_standing(&self, standing: usize, row: usize, own: &mut [[f64; C]; MOST_OWN]);
 }
 
 /// Readings of one artefact.
 #[derive(Debug, Clone)]
-pub(super) struct Placed<K> {
+pub(super) struct Placed<K, const C: usize> {
     pub group: Group,
     pub kind: K,
 }
 
-impl<K: Observed> Placed<K> {
+impl<K: Observed<C>, const C: usize> Placed<K, C> {
     /// Numbers of each touch, in the order that the file has them.
     fn filed(&self, scene: &K::Scene<'_>, each: impl Fn(&K::Scene<'_>, usize, usize) -> f64) -> Vec<f64> {
         let of_standing = |(standing, rows): (usize, &std::ops::Range<usize>)| {
@@ -120,13 +118,13 @@ impl<K: Observed> Placed<K> {
     }
 }
 
-impl<K: Observed> Readings for Placed<K> {
+impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
     fn len(&self) -> usize {
         self.group.touches.len()
     }
 
     fn equations(&self) -> usize {
-        K::COMPONENTS * self.len()
+        C * self.len()
     }
 
     fn placement_unknowns(&self) -> usize {
@@ -185,7 +183,7 @@ impl<K: Observed> Readings for Placed<K> {
         out.layout(layout.residual, layout.targets(unknowns).filter(|_| jacobian))?;
         let scene = self.kind.scene(&self.group, at);
         let directions = jacobian.then(|| scene.directions());
-        let mut tile = Tile::new(touches, at.model, K::COMPONENTS);
+        let mut tile = Tile::new(touches, at.model, C);
         let mut eliminated = Eliminated::default();
         let asked = out.standings_asked();
         let mut standing = 0;
@@ -198,8 +196,8 @@ impl<K: Observed> Readings for Placed<K> {
             while row < end {
                 let whole = &touches.standings[standing];
                 let rows = row..end.min(whole.end);
-                let place = Place::reserve(out, &tile, start, rows.clone(), &touches.probe, K::COMPONENTS)?;
-                let (live, mut gone) = (K::COMPONENTS * rows.len(), 0);
+                let place = Place::reserve(out, &tile, start, rows.clone(), &touches.probe, C)?;
+                let (live, mut gone) = (C * rows.len(), 0);
                 let block = &mut out.block;
                 place.write(block, layout.residual, |row| scene.residual(standing, row));
                 if jacobian {
@@ -238,13 +236,13 @@ impl<K: Observed> Readings for Placed<K> {
         let mut residuals_mm = vec![0.0; self.equations()];
         for (standing, rows) in touches.standings.iter().enumerate() {
             for row in rows.clone() {
-                let first = K::COMPONENTS * touches.order[row];
+                let first = C * touches.order[row];
                 let residual = scene.residual_mm(standing, row);
-                residuals_mm[first..first + K::COMPONENTS].copy_from_slice(&residual[..K::COMPONENTS]);
+                residuals_mm[first..first + C].copy_from_slice(&residual);
             }
         }
         let weights = self.filed(&scene, |_, _, row| self.kind.weight(row));
-        Unweighted { components: K::COMPONENTS, residuals_mm, weights }
+        Unweighted { components: C, residuals_mm, weights }
     }
 
     fn whitened(&self, at: At) -> Whitened {
@@ -252,10 +250,12 @@ impl<K: Observed> Readings for Placed<K> {
         let touches = &self.group.touches;
         let (mut norms, mut freedoms) = (Vec::with_capacity(self.len()), Vec::with_capacity(self.len()));
         for (standing, rows) in touches.standings.iter().enumerate() {
-            norms.extend(rows.clone().map(|row| Vector3::from(scene.residual(standing, row)).norm()));
-            freedoms.extend(left_of::<K>(&scene, standing, rows.clone()));
+            norms.extend(
+                rows.clone().map(|row| nalgebra::SVector::<f64, C>::from(scene.residual(standing, row)).norm()),
+            );
+            freedoms.extend(left_of::<C>(&scene, standing, rows.clone()));
             if scene.unknowns(standing) > 0 {
-                shared(&mut norms[rows.clone()], &mut freedoms[rows.clone()], K::COMPONENTS);
+                shared(&mut norms[rows.clone()], &mut freedoms[rows.clone()], C);
             }
         }
         let filed = |values: Vec<f64>| touches.filed(values.into_iter());
@@ -266,8 +266,8 @@ impl<K: Observed> Readings for Placed<K> {
         self.group.touches.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.group.touches.poses.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.group.touches.poses.seen()
     }
 
     fn taken_anew(
@@ -308,15 +308,15 @@ impl<K: Observed> Readings for Placed<K> {
 }
 
 /// Degrees of freedom that each touch of a standing has left when the placement follows it: its equations less its leverage.
-fn left_of<K: Observed>(scene: &K::Scene<'_>, standing: usize, rows: std::ops::Range<usize>) -> Vec<f64> {
-    let (count, components) = (rows.len(), K::COMPONENTS);
-    let unknowns = scene.unknowns(standing).min(components * count);
-    let mut own = DMatrix::zeros(components * count, unknowns);
+fn left_of<const C: usize>(scene: &impl Scene<C>, standing: usize, rows: std::ops::Range<usize>) -> Vec<f64> {
+    let count = rows.len();
+    let unknowns = scene.unknowns(standing).min(C * count);
+    let mut own = DMatrix::zeros(C * count, unknowns);
     for (i, row) in rows.enumerate() {
-        let mut derivatives = [[0.0; 3]; MOST_OWN];
+        let mut derivatives = [[0.0; C]; MOST_OWN];
         scene.by_standing(standing, row, &mut derivatives);
         for (k, derivative) in derivatives.iter().enumerate().take(unknowns) {
-            (0..components).for_each(|c| own[(components * i + c, k)] = derivative[c]);
+            (0..C).for_each(|c| own[(C * i + c, k)] = derivative[c]);
         }
     }
     // turns move touches by their distance, shifts by one: alike in size for the factorization
@@ -325,6 +325,6 @@ fn left_of<K: Observed>(scene: &K::Scene<'_>, standing: usize, rows: std::ops::R
         column /= if norm > 0.0 { norm } else { 1.0 };
     }
     let q = own.qr().q();
-    let left = |i: usize| (components as f64 - q.rows(components * i, components).norm_squared()).max(0.0);
+    let left = |i: usize| (C as f64 - q.rows(C * i, C).norm_squared()).max(0.0);
     (0..count).map(left).collect()
 }

@@ -5,6 +5,7 @@ use super::model::At;
 use super::noise::{Noise, Weighing, normal};
 use super::residuals::{Unweighted, Whitened};
 use super::writer::Writer;
+use crate::arm::Seen;
 use crate::error::Result;
 use crate::kinematics::Sample;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -81,8 +82,8 @@ pub trait Readings: Debug + Send + Sync {
     /// Poses of the readings, at most about `most` of them.
     fn samples(&self, most: usize) -> Vec<Sample>;
 
-    /// Lowest and highest temperature above 20 °C, where it is known.
-    fn warmth_range_k(&self) -> Option<(f64, f64)>;
+    /// What they show of what the arm's effects depend on.
+    fn seen(&self) -> Seen;
 
     /// The same readings, exact at these parameters, with new noise, and dimensions calibrated anew.
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {

@@ -77,28 +77,34 @@ impl<'a> Place<'a> {
     }
 
     /// Writes a column, reading by reading.
-    pub fn write(&self, block: &mut RowBlock, column: usize, value: impl Fn(usize) -> [f64; 3]) {
+    pub fn write<const C: usize>(&self, block: &mut RowBlock, column: usize, value: impl Fn(usize) -> [f64; C]) {
         let target = &mut block.columns.column_mut(column)[self.used.clone()];
         let count = self.in_tile.len();
-        target[self.components * count..].fill(0.0);
+        target[C * count..].fill(0.0);
         for (i, row) in self.rows().enumerate() {
             let values = value(row);
-            (0..self.components).for_each(|c| target[c * count + i] = values[c]);
+            (0..C).for_each(|c| target[c * count + i] = values[c]);
         }
     }
 
     /// Writes the columns of the standing's unknowns behind the residual.
-    pub fn write_own(&self, block: &mut RowBlock, unknowns: usize, values: impl Fn(usize, &mut [[f64; 3]; MOST_OWN])) {
+    pub fn write_own<const C: usize>(
+        &self,
+        block: &mut RowBlock,
+        unknowns: usize,
+        values: impl Fn(usize, &mut [[f64; C]; MOST_OWN]),
+    ) {
         let (first, count) = (block.residual + 1, self.in_tile.len());
         for k in 0..unknowns {
-            block.columns.column_mut(first + k)[self.used.clone()][self.components * count..].fill(0.0);
+            block.columns.column_mut(first + k)[self.used.clone()][C * count..].fill(0.0);
         }
-        let mut own = [[0.0; 3]; MOST_OWN];
+        let stride = block.columns.stride;
+        let target = &mut block.columns.data[first * stride + self.used.start..];
+        let mut own = [[0.0; C]; MOST_OWN];
         for (i, row) in self.rows().enumerate() {
             values(row, &mut own);
-            for (k, derivative) in own.iter().enumerate().take(unknowns) {
-                let target = &mut block.columns.column_mut(first + k)[self.used.clone()];
-                (0..self.components).for_each(|c| target[c * count + i] = derivative[c]);
+            for (k, derivative) in own[..unknowns].iter().enumerate() {
+                (0..C).for_each(|c| target[k * stride + c * count + i] = derivative[c]);
             }
         }
     }

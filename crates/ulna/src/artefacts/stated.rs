@@ -54,8 +54,8 @@ pub struct Rows<'a> {
     pub poses: Angles<'a>,
     /// Which probe took each row.
     pub probe: &'a [usize],
-    /// Row-major angles of a second pose of each row, rad.
-    pub p_rad: Option<&'a [f64]>,
+    /// A second pose of each row.
+    pub second: Option<Angles<'a>>,
     /// Which feature was touched.
     pub feature: Option<&'a [usize]>,
     /// Which standing of the artefact: any labels.
@@ -134,7 +134,7 @@ impl Column {
             Column::Frame => stated.frame.is_some(),
             Column::Inside => stated.inside,
             Column::Balls => stated.balls_mm.is_some(),
-            Column::SecondPose => rows.p_rad.is_some(),
+            Column::SecondPose => rows.second.is_some(),
             Column::Feature => rows.feature.is_some(),
             Column::Placement => rows.placement.is_some(),
             Column::Measured => rows.measured_mm.is_some(),

@@ -83,9 +83,7 @@ impl<S: Shape<U>, const U: usize> Surface<S, U> {
     }
 }
 
-impl<S: Shape<U>, const U: usize> Observed for Surface<S, U> {
-    const COMPONENTS: usize = 1;
-
+impl<S: Shape<U>, const U: usize> Observed<1> for Surface<S, U> {
     type Scene<'a> = Seen<'a, S, U>;
 
     fn scene<'a>(&'a self, group: &'a Group, at: At<'a>) -> Seen<'a, S, U> {
@@ -181,7 +179,7 @@ impl<S, const U: usize> Seen<'_, S, U> {
     }
 }
 
-impl<S: Shape<U>, const U: usize> Scene for Seen<'_, S, U> {
+impl<S: Shape<U>, const U: usize> Scene<1> for Seen<'_, S, U> {
     type Directions<'b>
         = Normals
     where
@@ -203,20 +201,20 @@ impl<S: Shape<U>, const U: usize> Scene for Seen<'_, S, U> {
         self.touched[row].normal * self.touched[row].residual_mm
     }
 
-    fn residual_mm(&self, _: usize, row: usize) -> [f64; 3] {
-        [self.touched[row].residual_mm, 0.0, 0.0]
+    fn residual_mm(&self, _: usize, row: usize) -> [f64; 1] {
+        [self.touched[row].residual_mm]
     }
 
-    fn residual(&self, _: usize, row: usize) -> [f64; 3] {
-        [self.weight(row) * self.touched[row].residual_mm, 0.0, 0.0]
+    fn residual(&self, _: usize, row: usize) -> [f64; 1] {
+        [self.weight(row) * self.touched[row].residual_mm]
     }
 
-    fn by_dimension(&self, _: usize, row: usize, dimension: usize) -> [f64; 3] {
+    fn by_dimension(&self, _: usize, row: usize, dimension: usize) -> [f64; 1] {
         let size = self.surface.unknown[dimension];
-        [-self.weight(row) * self.surface.shape.apart_by(size, self.surface.measured(row)), 0.0, 0.0]
+        [-self.weight(row) * self.surface.shape.apart_by(size, self.surface.measured(row))]
     }
 
-    fn by_standing(&self, _: usize, row: usize, own: &mut [[f64; 3]; MOST_OWN]) {
+    fn by_standing(&self, _: usize, row: usize, own: &mut [[f64; 1]; MOST_OWN]) {
         let weight = self.weight(row);
         own.iter_mut().zip(self.touched[row].own).for_each(|(own, value)| own[0] = weight * value);
     }

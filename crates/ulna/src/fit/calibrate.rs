@@ -211,7 +211,7 @@ fn identifiability(
             start: problem.arm(),
             pins,
             symmetries: &judged.symmetries,
-            known,
+            known: &problem.known(known.length_mm, known.angle_rad),
             sigma,
         },
     )

@@ -301,8 +301,8 @@ impl<'a> Way<'a> {
         assembly.rows(&self.x, true, &mut triangle)?;
         let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
         let seen = Decomposition::new(&triangle, self.free.len(), assembly.natural_scale(), &slices);
-        let units = self.problem.parameter_units();
-        let known = |unknown: usize| self.options.known.of(units[self.free[unknown]]);
+        let known = self.problem.known(self.options.known.length_mm, self.options.known.angle_rad);
+        let known = |unknown: usize| known[self.free[unknown]];
         let least = seen.rank.saturating_sub(families)..seen.rank;
         let all_seen = seen.rank + symmetries.len() == seen.kept.len();
         let well = |i: usize| seen.u_along(i, sigma).iter().enumerate().all(|(unknown, u)| u.abs() <= known(unknown));

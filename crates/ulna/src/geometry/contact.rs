@@ -27,14 +27,25 @@ pub(super) struct Spread {
 
 impl Spread {
     pub fn of(contacts: &[Contact]) -> Spread {
-        let weights: f64 = contacts.iter().map(|contact| contact.weight.powi(2)).sum();
-        let share = |contact: &Contact| contact.weight.powi(2) / weights;
-        let mean_mm: Vector3<f64> = contacts.iter().map(|contact| contact.p_mm * share(contact)).sum();
-        let apart_mm: f64 = contacts.iter().map(|contact| contact.apart_mm * share(contact)).sum();
-        let scatter = contacts.iter().map(|contact| {
-            let arm = contact.p_mm - mean_mm;
-            arm * arm.transpose() * share(contact)
-        });
-        Spread { weights, mean_mm, apart_mm, scatter: scatter.sum() }
+        let (mut weights, mut mean_mm, mut apart_mm) = (0.0, Vector3::zeros(), 0.0);
+        for contact in contacts {
+            let weight = contact.weight * contact.weight;
+            weights += weight;
+            mean_mm += contact.p_mm * weight;
+            apart_mm += contact.apart_mm * weight;
+        }
+        mean_mm /= weights;
+        let mut scatter = Matrix3::zeros();
+        for contact in contacts {
+            let arm = (contact.p_mm - mean_mm) * contact.weight;
+            scatter += arm * arm.transpose();
+        }
+        Spread { weights, mean_mm, apart_mm: apart_mm / weights, scatter: scatter / weights }
+    }
+
+    /// The direction in which the contacts scatter least.
+    pub fn thinnest(&self) -> Vector3<f64> {
+        let eigen = self.scatter.symmetric_eigen();
+        eigen.eigenvectors.column(eigen.eigenvalues.imin()).into()
     }
 }

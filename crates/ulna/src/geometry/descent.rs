@@ -5,8 +5,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// Steps to the best figure; some five are enough but for points that hardly show it.
 pub(super) const TO_THE_END: usize = 60;
-/// Steps after which what is left to do is done with second derivatives.
-const GAUSS_NEWTON_STEPS: usize = 3;
+/// Steps after which, at the latest, what is left to do is done with second derivatives.
+const GAUSS_NEWTON_STEPS: usize = 5;
 /// A step this small against the figure's size is none.
 const STILL: f64 = 1e-14;
 /// A step that promises to lower the cost by a smaller part than this is taken unasked: the costs to be compared are
@@ -57,12 +57,12 @@ where
 {
     let mut state = start;
     let mut here = sum(&state, false);
-    let mut last = f64::INFINITY;
+    let (mut last, mut newton) = (f64::INFINITY, false);
     for number in 0..steps {
         // what no point shows stays as it is
         let shown = 1e-12 * here.normal.trace().max(f64::MIN_POSITIVE);
         let normal = here.normal + SMatrix::from_diagonal_element(shown);
-        let curved = (number >= GAUSS_NEWTON_STEPS).then(|| (normal + here.curvature).cholesky()).flatten();
+        let curved = newton.then(|| (normal + here.curvature).cholesky()).flatten();
         let Some(factor) = curved.or_else(|| normal.cholesky()) else { break };
         let mut step = factor.solve(&here.right);
         let promised = step.dot(&here.right) <= PROMISE * here.cost;
@@ -70,10 +70,12 @@ where
         if promised && step.norm() >= last {
             break;
         }
+        last = if promised && newton { step.norm() } else { f64::INFINITY };
+        newton |= promised || number + 1 >= GAUSS_NEWTON_STEPS;
         let mut better = None;
         for _ in 0..30 {
             let next = moved(&state, &step);
-            let there = sum(&next, number + 1 >= GAUSS_NEWTON_STEPS);
+            let there = sum(&next, newton);
             if promised || there.cost <= here.cost {
                 better = Some((next, there));
                 break;
@@ -85,7 +87,6 @@ where
         if step.norm() <= STILL * size {
             break;
         }
-        last = if promised { step.norm() } else { f64::INFINITY };
     }
     (state, here.cost)
 }

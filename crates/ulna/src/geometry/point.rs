@@ -8,6 +8,9 @@ use nalgebra::{Const, DimMin, Matrix4, SMatrix, SVector, Vector3, Vector4};
 /// Residuals beyond this part of the radius are those of a centre on the wrong side.
 const WRONG: f64 = 0.05;
 
+/// Contacts whose scatter fills less than this part of a ball's are nearly in a plane.
+const FLAT: f64 = 0.05;
+
 /// A point, and what is added to all distances from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Centre {
@@ -31,9 +34,9 @@ impl Centre {
 pub fn at_known_distances(contacts: &[Contact]) -> Centre {
     let spread = Spread::of(contacts);
     let mut best: Option<(Centre, f64)> = None;
-    let start = if contacts.len() < 5 { None } else { algebraic(contacts, &spread, |contact| contact.apart_mm) };
-    if let Some(start) = start {
+    if let Some(start) = algebraic(contacts, &spread, |contact| contact.apart_mm) {
         let found = improved::<3>(contacts, Centre { radius_mm: 0.0, ..start });
+        let found = on_either_side(contacts, &spread, found);
         if found.1 <= spread.weights * (WRONG * spread.apart_mm).powi(2) {
             return found.0;
         }
@@ -52,9 +55,21 @@ pub fn at_known_distances(contacts: &[Contact]) -> Centre {
 /// contacts are fewer than four or lie in a plane.
 pub fn sphere(contacts: &[Contact]) -> Option<Centre> {
     let spread = Spread::of(contacts);
-    let start = algebraic(contacts, &spread, |_| 0.0).filter(|_| contacts.len() >= 4)?;
+    let start = algebraic(contacts, &spread, |_| 0.0)?;
     let start = Centre { radius_mm: start.radius_mm - spread.apart_mm, ..start };
     Some(improved::<4>(contacts, start).0)
+}
+
+/// The better of a centre and of what lies on the other side of contacts that are nearly in a plane, which may know little of
+/// the side that the centre is on.
+fn on_either_side(contacts: &[Contact], spread: &Spread, found: (Centre, f64)) -> (Centre, f64) {
+    if spread.scatter.determinant() > FLAT * (spread.scatter.trace() / 3.0).powi(3) {
+        return found;
+    }
+    let normal = spread.thinnest();
+    let over = normal * normal.dot(&(found.0.at_mm - spread.mean_mm));
+    let other = improved::<3>(contacts, Centre { at_mm: found.0.at_mm - over * 2.0, radius_mm: 0.0 });
+    if other.1 < found.1 { other } else { found }
 }
 
 /// Gauss-Newton from a centre; with a fourth unknown the radius is one.
@@ -88,6 +103,9 @@ where
 /// Centre and radius by linear least squares, `‖p‖² - apart² = 2 p·c + k` (Coope 1993), where the contacts are enough for
 /// it.
 fn algebraic(contacts: &[Contact], spread: &Spread, apart_mm: impl Fn(&Contact) -> f64) -> Option<Centre> {
+    if contacts.len() < 4 {
+        return None;
+    }
     let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
     for contact in contacts {
         let p = contact.p_mm - spread.mean_mm;
@@ -103,8 +121,7 @@ fn algebraic(contacts: &[Contact], spread: &Spread, apart_mm: impl Fn(&Contact) 
 /// Above and below the contacts, as far as the distances demand.
 fn on_both_sides(spread: &Spread) -> [Vector3<f64>; 2] {
     let radius = spread.apart_mm;
-    let eigen = spread.scatter.symmetric_eigen();
-    let normal: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
+    let normal = spread.thinnest();
     let height = (radius * radius - spread.scatter.trace()).max(0.01 * radius * radius).sqrt();
     [spread.mean_mm + normal * height, spread.mean_mm - normal * height]
 }

@@ -1,6 +1,6 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
-use crate::arm::{Arm, JointModel, Unit};
+use crate::arm::{Arm, JointModel, Lost, Seen};
 use crate::kinematics::{Sample, jacobian, tip_mm};
 use crate::problem::Problem;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -22,10 +22,8 @@ pub enum Cause {
     ParallelAxes,
     /// The last link and the tip say the same thing twice.
     RedundantLink,
-    /// The arm was always as warm.
-    TemperatureStill,
-    /// Gravity makes no moment about an axis.
-    NoMoment,
+    /// An effect had no chance to show: one of its own words.
+    OfEffect(&'static str),
     /// It moves the tip, but not in what was read.
     Coverage,
 }
@@ -41,8 +39,7 @@ impl Cause {
             Cause::JointStill => "joint-still",
             Cause::ParallelAxes => "parallel-axes",
             Cause::RedundantLink => "redundant-link",
-            Cause::TemperatureStill => "temperature-still",
-            Cause::NoMoment => "no-moment",
+            Cause::OfEffect(cause) => cause,
             Cause::Coverage => "coverage",
         }
     }
@@ -74,8 +71,8 @@ pub(crate) struct Scene<'a> {
     /// poses of some of the readings
     poses: &'a [Sample],
     probes_used: Vec<bool>,
-    /// lowest and highest temperature above 20 °C
-    warmth_range_k: Option<(f64, f64)>,
+    /// of what effects depend on
+    seen: Seen,
     /// how far a unit of each parameter moves a tip at the most, mm
     natural_scale: Vec<f64>,
     /// parameters that only move the base frame
@@ -84,9 +81,9 @@ pub(crate) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub fn new(problem: &Problem, arm: &'a Arm, free: &'a [usize], poses: &'a [Sample]) -> Scene<'a> {
-        let (probes_used, warmth_range_k) = (problem.probes_used(), problem.warmth_range_k());
+        let (probes_used, seen) = (problem.probes_used(), problem.seen());
         let (natural_scale, base) = (problem.natural_scale(), problem.base_parameters());
-        Scene { arm, free, poses, probes_used, warmth_range_k, natural_scale, base }
+        Scene { arm, free, poses, probes_used, seen, natural_scale, base }
     }
 
     /// Whether every tip that was read with lies on the last axis.
@@ -98,15 +95,8 @@ impl<'a> Scene<'a> {
     fn of_last_encoder(&self, j: usize) -> bool {
         j >= self.arm.geometry_count() && self.arm.joint_of(j) == Some(self.arm.encoders() - 1)
     }
-
-    /// Whether the temperature never changed.
-    fn as_warm(&self) -> bool {
-        self.warmth_range_k.is_none_or(|(low, high)| high - low < STILL_K)
-    }
 }
 
-/// Temperatures closer than this are the same, K.
-const STILL_K: f64 = 1e-3;
 /// A joint that turned less than this has not been moved, rad.
 const STILL_RAD: f64 = 1e-6;
 /// Axes closer to parallel than this are parallel, rad.
@@ -172,29 +162,23 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
 
 /// What is said of parameters beyond the geometry that had no chance to show.
 fn of_effects(takes_part: &[usize], scene: &Scene) -> Option<Because> {
-    let units = scene.arm.parameter_units();
-    let beyond = |unit: Unit| takes_part.iter().copied().find(|&j| units.get(j) == Some(&unit));
-    if beyond(Unit::PerKelvin).is_some() && scene.as_warm() {
-        return Some(Because {
-            cause: Cause::TemperatureStill,
-            because: "the temperature was the same in all readings: a warmer link cannot be told from a longer one"
-                .into(),
-            remedy:
-                "take readings at other temperatures, or hold joint.*.expansion (at the material's, in the arm file)"
-                    .into(),
-        });
-    }
-    let bent = beyond(Unit::RadPerNewtonMetre)?;
-    if takes_part.len() > 1 || scene.of_last_encoder(bent) && scene.read_on_axis(scene.arm) {
-        return None;
-    }
-    let joint = scene.arm.joint_of(bent)? + 1;
-    Some(Because {
-        cause: Cause::NoMoment,
-        because: format!(
-            "gravity makes no moment about the axis of joint {joint}: it is upright, or carries no stated mass"
-        ),
-        remedy: format!("hold joint.{joint}.compliance: nothing depends on it while the arm stands so"),
+    let last = scene.arm.encoders() - 1;
+    let mut first = scene.arm.geometry_count();
+    scene.arm.effects().all().find_map(|effect| {
+        let own = first..first + effect.values().len();
+        first = own.end;
+        let mine = takes_part.iter().filter(|j| own.contains(j));
+        let joints: Vec<usize> = mine.filter_map(|&j| scene.arm.joint_of(j)).collect();
+        if joints.is_empty() {
+            return None;
+        }
+        let unseen = effect.unseen(&Lost {
+            alone: takes_part.len() == 1,
+            hidden: scene.read_on_axis(scene.arm).then_some(last),
+            joints: &joints,
+            seen: &scene.seen,
+        })?;
+        Some(Because { cause: Cause::OfEffect(unseen.cause), because: unseen.because, remedy: unseen.remedy })
     })
 }
 

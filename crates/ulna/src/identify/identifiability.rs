@@ -38,26 +38,6 @@ pub struct Known {
     pub angle_rad: f64,
 }
 
-/// What is known of any engineering material: none expands by more than this, 1/K.
-const EXPANSION_PER_K: f64 = 3e-5;
-/// A joint that gives way by more than this for a newton metre is broken, rad.
-const COMPLIANCE_RAD_PER_NM: f64 = 1e-3;
-/// An instrument that is wrong by a larger part than this is no instrument.
-const SCALE: f64 = 1e-3;
-
-impl Known {
-    /// How well a parameter of this unit is known.
-    pub(crate) fn of(self, unit: Unit) -> f64 {
-        match unit {
-            Unit::Rad => self.angle_rad,
-            Unit::Mm => self.length_mm,
-            Unit::PerKelvin => EXPANSION_PER_K,
-            Unit::RadPerNewtonMetre => COMPLIANCE_RAD_PER_NM,
-            Unit::One => SCALE,
-        }
-    }
-}
-
 impl Default for Known {
     /// A drawing: 1 mm, 0.01 rad.
     fn default() -> Self {
@@ -105,7 +85,8 @@ pub(crate) struct Question<'a> {
     pub pins: &'a [Pin],
     /// the same directions at the arm in question
     pub symmetries: &'a [Symmetry],
-    pub known: Known,
+    /// of each parameter: standard uncertainty before any reading, where it has no prior
+    pub known: &'a [f64],
     /// standard deviation of a whitened residual
     pub sigma: f64,
 }
@@ -172,7 +153,7 @@ fn left_open(directions: &[Vec<f64>], decomposition: &Decomposition, question: &
     let count = question.scene.free.len();
     let known = |j: usize| match question.priors[j] {
         Some((_, u)) => u,
-        None => question.known.of(question.units[question.scene.free[j]]),
+        None => question.known[question.scene.free[j]],
     };
     let covariance = if directions.is_empty() { vec![] } else { decomposition.covariance() };
     let mut open = vec![false; count];
@@ -222,7 +203,7 @@ fn lost_directions(decomposition: &Decomposition, question: &Question, count: us
     // leading parameter 1, nothing that is rounding
     let sparse = |v: Vec<f64>| {
         let mut direction = vec![0.0; count];
-        let leading = (0..v.len()).max_by(|&a, &b| v[a].abs().total_cmp(&v[b].abs())).unwrap_or(0);
+        let leading = (0..v.len()).max_by(|&a, &b| rank(&v, a).total_cmp(&rank(&v, b))).unwrap_or(0);
         let unit = v[leading] / norms[leading];
         for a in (0..v.len()).filter(|&a| v[a].abs() > NEGLIGIBLE_WEIGHT * v[leading].abs()) {
             direction[kept[a]] = v[a] / norms[a] / unit;
@@ -244,6 +225,12 @@ fn lost_directions(decomposition: &Decomposition, question: &Question, count: us
     lost
 }
 
+/// By how much a column takes part. Of equals the later one leads, whatever rounding says: where half a backlash is a zero
+/// offset, the backlash is what is lost.
+fn rank(row: &[f64], column: usize) -> f64 {
+    row[column].abs() * (1.0 + 1e-9 * column as f64)
+}
+
 /// Gauss-Jordan with complete pivoting on the rows: each keeps one pivot that no other has.
 fn reduce(rows: &mut [Vec<f64>]) {
     let columns = rows.first().map_or(0, Vec::len);
@@ -251,7 +238,7 @@ fn reduce(rows: &mut [Vec<f64>]) {
     for k in 0..rows.len() {
         let candidates = (k..rows.len()).flat_map(|r| (0..columns).map(move |c| (r, c)));
         let free = candidates.filter(|&(_, c)| !used[c]);
-        let Some((row, pivot)) = free.max_by(|&(r, c), &(s, d)| rows[r][c].abs().total_cmp(&rows[s][d].abs())) else {
+        let Some((row, pivot)) = free.max_by(|&(r, c), &(s, d)| rank(&rows[r], c).total_cmp(&rank(&rows[s], d))) else {
             return;
         };
         used[pivot] = true;
@@ -277,7 +264,7 @@ fn weak(decomposition: &Decomposition, question: &Question, names: &[String]) ->
     // what has a prior is never known worse than that
     let known = |j: usize| match question.priors[j] {
         Some(_) => f64::INFINITY,
-        None => question.known.of(units[question.scene.free[j]]),
+        None => question.known[question.scene.free[j]],
     };
     let mut result = Vec::new();
     for i in (0..decomposition.rank).rev() {

@@ -2,10 +2,9 @@
 
 use crate::arm::Compliance;
 
-/// Masses, centres and how joints give way.
+/// Masses and centres.
 #[derive(Debug, Clone)]
 pub(super) struct Carried {
-    pub(super) rad_per_nm: Vec<f64>,
     /// mass times centre of the body that moves with each joint, kg mm
     pub(super) first_moments: Vec<[f64; 3]>,
     /// mass of all that moves with each joint, kg
@@ -19,7 +18,6 @@ impl Carried {
         let bodies = &compliance.bodies;
         let beyond = |i: usize| bodies[i..].iter().map(|body| body.mass_kg).sum();
         Carried {
-            rad_per_nm: compliance.rad_per_nm.clone(),
             first_moments: bodies.iter().map(|body| body.centre_mm.map(|c| c * body.mass_kg)).collect(),
             masses: (0..bodies.len()).map(beyond).collect(),
             pull: compliance.pull(),

@@ -1,8 +1,9 @@
 //! An arm's geometry, and what it does beyond it, as the kernels use them.
 
 use super::carried::Carried;
-use super::harmonics::Amplitudes;
-use crate::arm::{Arm, JointModel};
+use crate::arm::effects::{Compliance, Expansion, FromStated};
+use crate::arm::{Arm, Effects, JointModel};
+use std::ops::Range;
 
 /// One joint's numbers as the kernels use them.
 #[derive(Debug, Clone, Copy)]
@@ -28,11 +29,48 @@ pub(crate) struct Link {
 #[derive(Debug, Clone)]
 pub struct Chain {
     pub(crate) links: Vec<Link>,
-    pub(super) harmonics: Option<Amplitudes>,
-    /// ε of each joint's link, 1/K
-    pub(super) expansion: Option<Vec<f64>>,
-    pub(super) compliance: Option<Carried>,
-    effect_columns: usize,
+    pub(super) effects: Effects,
+    pub(super) columns: EffectColumns,
+    /// what the arm carries, if that bends it
+    pub(super) carried: Option<Carried>,
+}
+
+/// Where the derivatives of effects stand, counted from those of the first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct EffectColumns {
+    /// of each effect that adds to the angles of encoders: the first, and how many a joint has
+    pub(super) on_encoder: Vec<(usize, usize)>,
+    /// all of them
+    pub(super) on_encoders: usize,
+    pub(super) expansion: usize,
+    pub(super) compliance: usize,
+    count: usize,
+}
+
+impl EffectColumns {
+    fn new(effects: &Effects) -> EffectColumns {
+        let (mut on_encoder, mut first) = (vec![], 0);
+        for effect in effects.on_encoder() {
+            on_encoder.push((first, effect.shapes_of_joint()));
+            first += effect.values().len();
+        }
+        EffectColumns {
+            on_encoder,
+            on_encoders: first,
+            expansion: effects.start_of(Expansion::KIND),
+            compliance: effects.start_of(Compliance::KIND),
+            count: effects.count(),
+        }
+    }
+
+    /// Those of one joint's encoder.
+    #[inline(always)]
+    pub(super) fn of_encoder(&self, joint: usize) -> impl Iterator<Item = usize> {
+        let own = move |&(first, count): &(usize, usize)| -> Range<usize> {
+            first + joint * count..first + (joint + 1) * count
+        };
+        self.on_encoder.iter().flat_map(own)
+    }
 }
 
 impl Chain {
@@ -62,13 +100,11 @@ impl Chain {
             beta: None,
             bare: true,
         };
-        let effects = arm.effects();
         Chain {
             links: links.chain((!arm.has_full_last_link()).then_some(bare)).collect(),
-            harmonics: effects.harmonics.as_ref().map(Amplitudes::new),
-            expansion: effects.expansion.as_ref().map(|e| e.per_kelvin.clone()),
-            compliance: effects.compliance.as_ref().map(Carried::new),
-            effect_columns: effects.count(),
+            effects: arm.effects().clone(),
+            columns: EffectColumns::new(arm.effects()),
+            carried: arm.effects().compliance.as_ref().map(Carried::new),
         }
     }
 
@@ -84,21 +120,7 @@ impl Chain {
                 None => link.d = p[3],
             }
         }
-        let mut rest = effects;
-        let mut next = |own: &mut [f64]| {
-            let (values, others) = rest.split_at(own.len());
-            own.copy_from_slice(values);
-            rest = others;
-        };
-        if let Some(harmonics) = &mut self.harmonics {
-            next(harmonics.rad.as_flattened_mut());
-        }
-        if let Some(expansion) = &mut self.expansion {
-            next(expansion);
-        }
-        if let Some(compliance) = &mut self.compliance {
-            next(&mut compliance.rad_per_nm);
-        }
+        self.effects.set(effects);
     }
 
     /// Number of encoders.
@@ -113,7 +135,13 @@ impl Chain {
 
     /// Number of derivatives that are of parameters: joints, tip and effects.
     pub fn parameter_columns(&self) -> usize {
-        self.joint_parameter_count() + 3 + self.effect_columns
+        self.effect_column() + self.columns.count
+    }
+
+    /// The first of those of effects.
+    #[inline(always)]
+    pub(super) fn effect_column(&self) -> usize {
+        self.joint_parameter_count() + 3
     }
 
     /// The column behind them: the derivative with respect to the last joint's turn.
@@ -150,6 +178,6 @@ impl Chain {
 
     /// Whether there is anything but geometry.
     pub(super) fn has_effects(&self) -> bool {
-        self.effect_columns > 0
+        self.columns.count > 0
     }
 }

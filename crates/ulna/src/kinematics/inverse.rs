@@ -4,7 +4,9 @@
 //! coordinates, so each random start ends with another elbow and wrist.
 
 use crate::arm::Arm;
+use crate::kinematics::conditions::Conditions;
 use crate::kinematics::plain::{encoder_jacobian, tip_mm};
+use crate::kinematics::pose::Pose;
 use crate::monitor::Monitor;
 use crate::seeds::mix;
 use nalgebra::{DVector, Matrix3, Point3, Vector3};
@@ -25,11 +27,11 @@ const REACHED_MM: f64 = 1e-9;
 /// Steps from one posture before another is tried.
 const STEPS: usize = 60;
 
-/// A posture with the tip on `point_mm` (base frame) to 1e-9 mm, or none in `tries` random starts.
+/// A posture with the tip on `point_mm` (base frame) to 1e-9 mm under some conditions, or none in `tries` random starts.
 pub fn posture_for_point(
     arm: &Arm,
     probe: usize,
-    point_mm: Point3<f64>,
+    (point_mm, conditions): (Point3<f64>, Conditions),
     limits: &Limits,
     tries: usize,
     rng: &mut impl Rng,
@@ -39,24 +41,26 @@ pub fn posture_for_point(
     }
     (0..tries).find_map(|_| {
         let start = limits.range_rad.iter().map(|&(low, high)| low + (high - low) * rng.random::<f64>());
-        descend(arm, probe, point_mm, limits, start.collect())
+        descend(arm, probe, (point_mm, conditions), limits, start.collect())
     })
 }
 
-/// Postures for many points, three coordinates each: row-major, NaN where none was found. None where it was interrupted.
+/// Postures for many points, three coordinates each, and what is true at them: row-major, NaN where none was found. None
+/// where it was interrupted.
 ///
 /// Point k draws from (seed, k), so that the answer does not depend on how the work is cut.
 pub fn postures_for_points(
     arm: &Arm,
     probe: usize,
-    points_mm: &[f64],
+    (points_mm, conditions): (&[f64], Conditions),
     limits: &Limits,
     tries: usize,
     seed: u64,
     monitor: &dyn Monitor,
 ) -> Option<Vec<f64>> {
     let encoders = arm.encoders();
-    let mut postures = vec![f64::NAN; points_mm.len() / 3 * encoders];
+    let count = points_mm.len() / 3;
+    let mut postures = vec![f64::NAN; count * encoders];
     let stopped = AtomicBool::new(false);
     postures.par_chunks_exact_mut(encoders).zip(points_mm.par_chunks_exact(3)).enumerate().for_each(
         |(k, (posture, point))| {
@@ -64,8 +68,8 @@ pub fn postures_for_points(
                 return;
             }
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(mix(seed, k as u64));
-            let point = Point3::new(point[0], point[1], point[2]);
-            if let Some(q_rad) = posture_for_point(arm, probe, point, limits, tries, &mut rng) {
+            let wanted = (Point3::new(point[0], point[1], point[2]), conditions.part(k..k + 1, count));
+            if let Some(q_rad) = posture_for_point(arm, probe, wanted, limits, tries, &mut rng) {
                 posture.copy_from_slice(&q_rad);
             }
             if !monitor.keep_going() {
@@ -76,14 +80,21 @@ pub fn postures_for_points(
     (!stopped.into_inner()).then_some(postures)
 }
 
-fn descend(arm: &Arm, probe: usize, point_mm: Point3<f64>, limits: &Limits, mut q_rad: Vec<f64>) -> Option<Vec<f64>> {
+fn descend(
+    arm: &Arm,
+    probe: usize,
+    (point_mm, conditions): (Point3<f64>, Conditions),
+    limits: &Limits,
+    mut q_rad: Vec<f64>,
+) -> Option<Vec<f64>> {
     let mut damping = 1e-4;
-    let mut miss = point_mm - tip_mm(arm, probe, &q_rad);
+    let miss_of = |q_rad: &[f64]| point_mm - tip_mm(arm, probe, Pose { q_rad, conditions });
+    let mut miss = miss_of(&q_rad);
     for _ in 0..STEPS {
         if miss.norm() <= REACHED_MM {
             return Some(q_rad);
         }
-        let jacobian = encoder_jacobian(arm, probe, &q_rad);
+        let jacobian = encoder_jacobian(arm, probe, Pose { q_rad: &q_rad, conditions });
         let square: Matrix3<f64> = &jacobian * jacobian.transpose();
         let damped = square + Matrix3::from_diagonal_element(damping * square.trace() / 3.0);
         let weights: Vector3<f64> = damped.cholesky()?.solve(&miss);
@@ -96,7 +107,7 @@ fn descend(arm: &Arm, probe: usize, point_mm: Point3<f64>, limits: &Limits, mut 
             .zip(&limits.range_rad)
             .map(|((q, s), &(low, high))| (q + shorten * s).clamp(low, high))
             .collect();
-        let next_miss = point_mm - tip_mm(arm, probe, &next);
+        let next_miss = miss_of(&next);
         if next_miss.norm() < miss.norm() {
             (q_rad, miss) = (next, next_miss);
             damping = (damping * 0.1).max(1e-15);
@@ -125,7 +136,7 @@ mod tests {
         for k in 0..200 {
             let angle = k as f64 * 0.7;
             let point = Point3::new(500.0 * angle.cos(), 500.0 * angle.sin(), 100.0 + 2.0 * k as f64);
-            if let Some(q) = posture_for_point(&arm, 0, point, &limits, 40, &mut rng) {
+            if let Some(q) = posture_for_point(&arm, 0, (point, Conditions::default()), &limits, 40, &mut rng) {
                 assert!((tip_mm(&arm, 0, &q) - point).norm() <= 1e-9);
                 assert!(q.iter().all(|v| v.abs() <= 2.5));
                 reached += 1;
@@ -139,7 +150,8 @@ mod tests {
         let arm = samples::table2(10.0);
         let limits = Limits { range_rad: vec![(-3.0, 3.0); 7] };
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(7);
-        assert!(posture_for_point(&arm, 0, Point3::new(2000.0, 0.0, 0.0), &limits, 40, &mut rng).is_none());
+        let far = (Point3::new(2000.0, 0.0, 0.0), Conditions::default());
+        assert!(posture_for_point(&arm, 0, far, &limits, 40, &mut rng).is_none());
     }
 
     #[test]
@@ -147,8 +159,11 @@ mod tests {
         let arm = samples::table2(10.0);
         let limits = Limits { range_rad: vec![(-2.5, 2.5); 7] };
         let points: Vec<f64> = (0..150).flat_map(|k| [400.0 + f64::from(k), 3.0 * f64::from(k), 200.0]).collect();
-        let whole = postures_for_points(&arm, 0, &points, &limits, 40, 3, &Unwatched).unwrap();
-        let first = postures_for_points(&arm, 0, &points[..90], &limits, 40, 3, &Unwatched).unwrap();
+        let found = |points: &[f64]| {
+            let wanted = (points, Conditions::default());
+            postures_for_points(&arm, 0, wanted, &limits, 40, 3, &Unwatched).unwrap()
+        };
+        let (whole, first) = (found(&points), found(&points[..90]));
         assert_eq!(whole[..first.len()], first);
         for (q, point) in whole.chunks(7).zip(points.chunks(3)) {
             assert!((tip_mm(&arm, 0, q) - Point3::new(point[0], point[1], point[2])).norm() <= 1e-9);

@@ -14,12 +14,13 @@ pub mod propagate;
 
 mod carried;
 mod chain;
-mod harmonics;
+mod conditions;
 mod plain;
 mod pose;
 mod poses;
 
 pub use chain::Chain;
+pub use conditions::Conditions;
 pub use plain::{encoder_jacobian, frames, jacobian, tip_mm};
 pub use pose::{Pose, Sample};
 pub use poses::{Angles, Poses};

@@ -1,6 +1,7 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
 use super::pose::Pose;
+use crate::arm::effects::{Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -60,7 +61,7 @@ impl<'a> Posed<'a> {
         let rigid: Vec<f64> = (0..n).map(|i| signs[i] * pose.q_rad[i] - theta0(i)).collect();
         let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, &rigid));
         let turn = |i: usize| {
-            let added = effects.harmonics.as_ref().map_or(0.0, |h| signs[i] * h.added_rad(i, pose.q_rad[i]));
+            let added = signs[i] * effects.added_rad(i, pose.encoder(i));
             let given = weight.as_ref().map_or(0.0, |w| w.rad_per_nm(i) * w.moment_nm(i));
             rigid[i] + added + given
         };
@@ -127,28 +128,28 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     for k in 0..3 {
         jacobian.set_column(arm.tip_offset(probe) + k, &(r_base_tip.matrix().column(k) * posed.stretches[n - 1]));
     }
+    let effects = arm.effects();
     let mut at = arm.geometry_count();
-    let mut next = |column: Vector3<f64>| {
-        jacobian.set_column(at, &column);
-        at += 1;
-    };
-    for (i, sign) in arm.signs().enumerate() {
-        for &k in arm.effects().harmonics.iter().flat_map(|h| &h.orders) {
-            let angle = f64::from(k) * posed.pose.q_rad[i];
-            next(posed.by_turn(i) * sign * angle.cos());
-            next(posed.by_turn(i) * sign * angle.sin());
+    for effect in effects.on_encoder() {
+        for (i, sign) in arm.signs().enumerate() {
+            for shape in effect.shapes(posed.pose.encoder(i)) {
+                jacobian.set_column(at, &(posed.by_turn(i) * sign * shape));
+                at += 1;
+            }
         }
     }
-    for i in 0..arm.effects().expansion.as_ref().map_or(0, |e| e.per_kelvin.len()) {
+    let first = arm.geometry_count() + effects.start_of(Expansion::KIND);
+    for i in 0..effects.expansion.as_ref().map_or(0, |e| e.per_kelvin.len()) {
         let link = arm.joints().get(i).map_or(Vector3::zeros(), |joint| {
             let turn = posed.turns_rad[i];
             posed.frames[i] * Vector3::new(joint.a_mm * turn.cos(), joint.a_mm * turn.sin(), joint.d_mm)
         });
         let tip = if i + 1 == n { posed.frames[n] * posed.tip_mm / posed.stretches[i] } else { Vector3::zeros() };
-        next((link + tip) * posed.pose.warmth_k(i));
+        jacobian.set_column(first + i, &((link + tip) * posed.pose.warmth_k(i)));
     }
+    let first = arm.geometry_count() + effects.start_of(Compliance::KIND);
     if let Some(weight) = &posed.weight {
-        (0..n).for_each(|i| next(posed.by_turn(i) * weight.moment_nm(i)));
+        (0..n).for_each(|i| jacobian.set_column(first + i, &(posed.by_turn(i) * weight.moment_nm(i))));
     }
     jacobian
 }
@@ -157,7 +158,7 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
 pub fn encoder_jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matrix3xX<f64> {
     let posed = Posed::new(arm, probe, pose.into());
     let columns = arm.signs().enumerate().map(|(i, sign)| {
-        let slope = arm.effects().harmonics.as_ref().map_or(0.0, |h| h.slope(i, posed.pose.q_rad[i]));
+        let slope = arm.effects().slope(i, posed.pose.encoder(i));
         let given = posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
         sign * (posed.by_turn(i) * (1.0 + slope) + given)
     });

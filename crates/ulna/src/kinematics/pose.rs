@@ -1,28 +1,37 @@
-//! One pose.
+//! One pose, and one of a reading.
 
-/// Encoder angles of one pose, and how warm the arm was.
+use super::conditions::Conditions;
+use crate::arm::effects::Encoder;
+
+/// Encoder angles of one pose, and what was true at it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose<'a> {
     /// One for each encoder, rad.
     pub q_rad: &'a [f64],
-    /// Temperature above 20 °C: of the arm, or of each joint's link; empty for 20 °C.
-    pub warmth_k: &'a [f64],
+    /// Of this one pose.
+    pub conditions: Conditions<'a>,
 }
 
 impl Pose<'_> {
     /// Temperature of a joint's link above 20 °C.
     pub fn warmth_k(&self, joint: usize) -> f64 {
-        match self.warmth_k {
+        match self.conditions.warmth_k {
             [] => 0.0,
             [all] => *all,
             each => each[joint],
         }
     }
+
+    /// What a joint's encoder said.
+    pub(crate) fn encoder(&self, joint: usize) -> Encoder {
+        let approach = self.conditions.approach.get(joint).copied().unwrap_or(0.0);
+        Encoder { q_rad: self.q_rad[joint], approach }
+    }
 }
 
 impl<'a, T: AsRef<[f64]> + ?Sized> From<&'a T> for Pose<'a> {
     fn from(q_rad: &'a T) -> Self {
-        Pose { q_rad: q_rad.as_ref(), warmth_k: &[] }
+        Pose { q_rad: q_rad.as_ref(), conditions: Conditions::default() }
     }
 }
 
@@ -33,13 +42,16 @@ pub struct Sample {
     pub probe: usize,
     /// Encoder angles, rad.
     pub q_rad: Vec<f64>,
-    /// As in [`Pose`].
+    /// As in [`Conditions`].
     pub warmth_k: Vec<f64>,
+    /// As in [`Conditions`].
+    pub approach: Vec<f64>,
 }
 
 impl Sample {
     /// The pose alone.
     pub fn pose(&self) -> Pose<'_> {
-        Pose { q_rad: &self.q_rad, warmth_k: &self.warmth_k }
+        let conditions = Conditions { warmth_k: &self.warmth_k, approach: &self.approach };
+        Pose { q_rad: &self.q_rad, conditions }
     }
 }

@@ -1,7 +1,9 @@
-//! Encoder angles of many poses, in columns, and how warm the arm was.
+//! Encoder angles of many poses, in columns, and what was true at them.
 
 use super::chain::Link;
+use super::conditions::{Conditions, Held};
 use super::pose::{Pose, Sample};
+use crate::arm::effects::{EncoderLanes, Seen};
 use crate::simd::{Columns, Lanes};
 use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
@@ -12,36 +14,31 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 pub struct Angles<'a> {
     /// Row-major encoder angles, rad.
     pub q_rad: &'a [f64],
-    /// Temperature above 20 °C, K: one a row, or row-major one for each joint; empty where it was 20 °C.
-    pub warmth_k: &'a [f64],
+    /// What was true there.
+    pub conditions: Conditions<'a>,
 }
 
 impl<'a> Angles<'a> {
-    /// Of 20 °C.
+    /// Of 20 °C, approached from nobody knows where.
     pub fn cold(q_rad: &'a [f64]) -> Angles<'a> {
-        Angles { q_rad, warmth_k: &[] }
+        Angles { q_rad, conditions: Conditions::default() }
     }
 
     /// In parts of at most `rows` poses.
     pub fn chunks(self, rows: usize, encoders: usize) -> impl Iterator<Item = Angles<'a>> {
         let all = self.q_rad.len() / encoders;
-        let width = self.warmth_k.len().checked_div(all).unwrap_or(0);
         (0..all).step_by(rows.max(1)).map(move |start| {
             let end = all.min(start + rows);
-            Angles {
-                q_rad: &self.q_rad[start * encoders..end * encoders],
-                warmth_k: &self.warmth_k[start * width..end * width],
-            }
+            let q_rad = &self.q_rad[start * encoders..end * encoders];
+            Angles { q_rad, conditions: self.conditions.part(start..end, all) }
         })
     }
 
     /// One pose.
     pub fn pose(self, row: usize, encoders: usize) -> Pose<'a> {
-        let width = self.warmth_k.len() * encoders / self.q_rad.len().max(1);
-        Pose {
-            q_rad: &self.q_rad[row * encoders..(row + 1) * encoders],
-            warmth_k: &self.warmth_k[row * width..(row + 1) * width],
-        }
+        let q_rad = &self.q_rad[row * encoders..(row + 1) * encoders];
+        let conditions = self.conditions.part(row..row + 1, self.q_rad.len() / encoders);
+        Pose { q_rad, conditions }
     }
 }
 
@@ -49,8 +46,7 @@ impl<'a> Angles<'a> {
 #[derive(Debug, Clone)]
 pub struct Poses {
     pub(crate) q_rad: Columns,
-    /// temperature above 20 °C: one column, or one for each joint; none for 20 °C
-    warmth_k: Option<Columns>,
+    conditions: Held,
     /// sines in the first n columns, cosines in the next n
     pub(crate) sin_cos: Option<Columns>,
 }
@@ -58,25 +54,26 @@ pub struct Poses {
 impl Poses {
     /// Poses from row-major angles, n a row, rad.
     pub fn from_rows(q_rad: &[f64], encoders: usize) -> Poses {
-        Poses { q_rad: Columns::from_rows(q_rad, encoders), warmth_k: None, sin_cos: None }
+        Poses::new(Angles::cold(q_rad), encoders)
     }
 
-    /// Poses from row-major angles and warmth.
+    /// Poses from row-major angles and what was true there.
     pub fn new(angles: Angles, encoders: usize) -> Poses {
         let rows = angles.q_rad.len() / encoders;
-        Poses { warmth_k: warmth(angles.warmth_k, rows, None), ..Poses::from_rows(angles.q_rad, encoders) }
+        let conditions = Held::new(angles.conditions, rows, None);
+        Poses { q_rad: Columns::from_rows(angles.q_rad, encoders), conditions, sin_cos: None }
     }
 
     /// Room for `rows` poses, to be filled again and again.
     pub(crate) fn room(encoders: usize, rows: usize) -> Poses {
-        Poses { q_rad: Columns::zeros(encoders, rows), warmth_k: None, sin_cos: None }
+        Poses { q_rad: Columns::zeros(encoders, rows), conditions: Held::default(), sin_cos: None }
     }
 
     /// Takes other poses, no more than there is room for; without sines and cosines.
     pub(crate) fn fill(&mut self, angles: Angles) {
         let (encoders, rows) = (self.encoders(), self.q_rad.rows());
         self.q_rad.fill_from_rows(angles.q_rad, encoders);
-        self.warmth_k = warmth(angles.warmth_k, angles.q_rad.len() / encoders, Some(rows));
+        self.conditions = Held::new(angles.conditions, angles.q_rad.len() / encoders, Some(rows));
     }
 
     /// The angles, one column an encoder.
@@ -86,29 +83,25 @@ impl Poses {
 
     /// One pose, taken with a probe.
     pub fn sample(&self, row: usize, probe: usize) -> Sample {
-        let of = |columns: &Columns| (0..columns.width()).map(|j| columns.column(j)[row]).collect();
-        Sample { probe, q_rad: of(&self.q_rad), warmth_k: self.warmth_k.as_ref().map_or_else(Vec::new, of) }
+        let q_rad = (0..self.encoders()).map(|j| self.q_rad.column(j)[row]).collect();
+        let (warmth_k, approach) = self.conditions.row(row);
+        Sample { probe, q_rad, warmth_k, approach }
     }
 
-    /// Whether the temperature is known and not the same in all poses.
-    pub fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        let warmth = self.warmth_k.as_ref()?;
-        let all = (0..warmth.width()).flat_map(|j| &warmth.column(j)[..warmth.rows()]);
-        Some(all.fold((f64::MAX, f64::MIN), |(low, high), &t| (low.min(t), high.max(t))))
+    /// What they show of what effects depend on.
+    pub fn seen(&self) -> Seen {
+        self.conditions.seen()
     }
 
     /// Temperature above 20 °C of the link of joint `i`, for vector `k` of poses.
     #[inline(always)]
     pub(in crate::kinematics) fn warmth<S: Simd>(&self, simd: S, i: usize, k: usize) -> Lanes<S> {
-        match &self.warmth_k {
-            None => Lanes::splat(simd, 0.0),
-            Some(warmth) => warmth.load(simd, if warmth.width() == 1 { 0 } else { i }, k),
-        }
+        self.conditions.warmth(simd, i, k)
     }
 
     /// Sine and cosine of the encoder angle of joint `i` for vector `k` of poses.
     #[inline(always)]
-    pub(in crate::kinematics) fn sin_cos_q<S: Simd>(&self, simd: S, i: usize, k: usize) -> (Lanes<S>, Lanes<S>) {
+    fn sin_cos_q<S: Simd>(&self, simd: S, i: usize, k: usize) -> (Lanes<S>, Lanes<S>) {
         match &self.sin_cos {
             Some(kept) => (kept.load(simd, i, k), kept.load(simd, self.encoders() + i, k)),
             None => self.q_rad.load(simd, i, k).sin_cos(),
@@ -156,24 +149,13 @@ impl Poses {
 
     /// Some rows of what a file says, in the order of `rows`.
     pub(crate) fn gathered(angles: Angles, encoders: usize, rows: &[usize]) -> Poses {
-        let of_file = angles.q_rad.len() / encoders;
-        let gather = |row_major: &[f64], width: usize| {
-            let mut columns = Columns::zeros(width, rows.len());
-            for j in 0..width {
-                for (value, &row) in columns.column_mut(j).iter_mut().zip(rows) {
-                    *value = row_major[row * width + j];
-                }
-            }
-            columns
-        };
-        let warmth_k = (!angles.warmth_k.is_empty()).then(|| gather(angles.warmth_k, angles.warmth_k.len() / of_file));
-        Poses { q_rad: gather(angles.q_rad, encoders), warmth_k, sin_cos: None }
+        let conditions = Held::gathered(angles.conditions, angles.q_rad.len() / encoders, rows);
+        Poses { q_rad: Columns::gathered(angles.q_rad, encoders, rows), conditions, sin_cos: None }
     }
 
     /// Some of these poses, in the order of `rows`.
     pub(crate) fn picked(&self, rows: &[usize]) -> Poses {
-        let warmth_k = self.warmth_k.as_ref().map(|warmth| warmth.picked(rows));
-        Poses { q_rad: self.q_rad.picked(rows), warmth_k, sin_cos: None }
+        Poses { q_rad: self.q_rad.picked(rows), conditions: self.conditions.picked(rows), sin_cos: None }
     }
 
     /// Adds normal noise to every angle, sigma per encoder (none where the slice ends).
@@ -191,15 +173,25 @@ impl Poses {
     }
 }
 
-/// Warmth of `rows` poses in columns, with room for more where asked.
-fn warmth(warmth_k: &[f64], rows: usize, room: Option<usize>) -> Option<Columns> {
-    let width = warmth_k.len().checked_div(rows)?;
-    if width == 0 {
-        return None;
+/// What the encoder of one joint said, for one vector of poses.
+pub(in crate::kinematics) struct EncoderOf<'a, S: Simd> {
+    pub simd: S,
+    pub poses: &'a Poses,
+    pub joint: usize,
+    /// which vector of poses
+    pub k: usize,
+}
+
+impl<S: Simd> EncoderLanes<S> for EncoderOf<'_, S> {
+    #[inline(always)]
+    fn sin_cos(&self) -> (Lanes<S>, Lanes<S>) {
+        self.poses.sin_cos_q(self.simd, self.joint, self.k)
     }
-    let mut columns = Columns::zeros(width, room.unwrap_or(rows));
-    columns.fill_from_rows(warmth_k, width);
-    Some(columns)
+
+    #[inline(always)]
+    fn approach(&self) -> Lanes<S> {
+        self.poses.conditions.approach(self.simd, self.joint, self.k)
+    }
 }
 
 struct SinCosOp<'a> {

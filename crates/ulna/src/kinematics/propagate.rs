@@ -1,6 +1,6 @@
 //! What uncertain parameters do to a measured point.
 
-use crate::arm::{Arm, Unit};
+use crate::arm::Arm;
 use crate::kinematics::batch::{forward, gradient, scratch_len};
 use crate::kinematics::{Angles, Chain, Poses, jacobian, tip_mm};
 use crate::simd::{Columns, Lanes};
@@ -149,15 +149,11 @@ impl WithSimd for PropagateOp<'_> {
 pub fn check_jacobian(arm: &Arm, probe: usize, poses: Angles) -> f64 {
     let x = arm.parameters();
     let reach = arm.reach_mm(probe);
-    // a step that moves the tip by about as much as a thousandth of a radian does
-    let size = |unit: Unit| match unit {
-        Unit::Rad | Unit::Mm | Unit::One => 1.0,
-        Unit::PerKelvin => 1.0 / poses.warmth_k.iter().fold(10.0, |most: f64, t| most.max(t.abs())),
-        Unit::RadPerNewtonMetre => {
-            1.0 / arm.effects().compliance.as_ref().map_or(1.0, |c| c.most_nm(reach)).max(f64::MIN_POSITIVE)
-        }
-    };
-    let sizes: Vec<f64> = arm.parameter_units().into_iter().map(size).collect();
+    // a step that moves the tip by about as much as a thousandth of a radian or millimetre does
+    let geometry = arm.geometry_count();
+    let moves = arm.moves_mm(reach);
+    let size = |(j, moves): (usize, &f64)| if j < geometry { 1.0 } else { reach / moves };
+    let sizes: Vec<f64> = moves.iter().enumerate().map(size).collect();
     let scaled: Vec<f64> = x.iter().zip(&sizes).map(|(x, size)| x / size).collect();
     let step = vec![1e-3; x.len()];
     let worst = |row: usize| {

@@ -1,7 +1,7 @@
 //! An arm, and groups of readings of artefacts.
 
 use super::priors::Prior;
-use crate::arm::{Arm, Unit};
+use crate::arm::{Arm, Seen, Unit};
 use crate::artefacts::{
     At, Dimension, LEAST_NOISE, MOST_MM, Model, Noise, Readings, Unweighted, Weighing, Whitened, normal,
 };
@@ -211,10 +211,9 @@ impl Problem {
         self.groups.iter().flat_map(|g| g.samples(most)).collect()
     }
 
-    /// Lowest and highest temperature above 20 °C of all readings, where it is known.
-    pub fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        let ranges = self.groups.iter().filter_map(|g| g.warmth_range_k());
-        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+    /// What the readings show of what the arm's effects depend on.
+    pub fn seen(&self) -> Seen {
+        self.groups.iter().map(|g| g.seen()).reduce(Seen::and).unwrap_or_default()
     }
 
     /// Longest reach with any probe, mm.

@@ -2,12 +2,9 @@
 
 use super::groups::Problem;
 use super::priors::Prior;
-use crate::arm::{Arm, Compliance, JointModel, Unit};
+use crate::arm::{Arm, JointModel, Unit};
 use crate::artefacts::{Dimension, LEAST_NOISE, MOST_MM};
 use crate::error::{Error, Result};
-
-/// How many kelvin a workshop's temperature changes, in round figures.
-const SOME_KELVIN: f64 = 10.0;
 
 impl Problem {
     /// Number of parameters: the arm's, and the fitted dimensions.
@@ -43,14 +40,16 @@ impl Problem {
     /// How far a unit of each moves a tip at the most, mm.
     pub fn natural_scale(&self) -> Vec<f64> {
         let reach = self.reach_mm();
-        let most_nm = self.arm.effects().compliance.as_ref().map_or(0.0, |c| c.most_nm(reach));
-        let scale = |unit: Unit| match unit {
-            Unit::Mm => 1.0,
-            Unit::Rad | Unit::One => reach,
-            Unit::PerKelvin => reach * SOME_KELVIN,
-            Unit::RadPerNewtonMetre => reach * most_nm.max(f64::MIN_POSITIVE),
-        };
-        self.parameter_units().into_iter().map(scale).collect()
+        let mut scale = self.arm.moves_mm(reach);
+        scale.extend(self.fitted_dimensions().map(|dimension| dimension.moves_mm(reach)));
+        scale
+    }
+
+    /// Standard uncertainty of each before any reading, where lengths and angles are known so well.
+    pub fn known(&self, length_mm: f64, angle_rad: f64) -> Vec<f64> {
+        let mut known = self.arm.known(length_mm, angle_rad);
+        known.extend(self.fitted_dimensions().map(|dimension| dimension.known(length_mm)));
+        known
     }
 
     /// What is known of parameters before any reading: as stated, and of fitted dimensions by their calibration.
@@ -108,9 +107,9 @@ impl Problem {
         if !self.base_free() {
             return vec![];
         }
-        // gravity that leans tells a turned base from one that is not, by how joints give way
-        let leans = self.arm.effects().compliance.as_ref().is_some_and(Compliance::leans);
-        let turn = (!leans).then_some(0);
+        // such as gravity that leans, by how joints give way
+        let seen = self.arm.effects().all().any(|effect| effect.sees_the_base_turn());
+        let turn = (!seen).then_some(0);
         let lift = (self.arm.joints()[0].model == JointModel::Dh).then_some(3);
         turn.into_iter().chain(lift).collect()
     }

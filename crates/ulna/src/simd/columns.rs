@@ -33,6 +33,17 @@ impl Columns {
         }
     }
 
+    /// Some rows of row-major data of `columns` numbers a row, in the order given.
+    pub(crate) fn gathered(row_major: &[f64], columns: usize, rows: &[usize]) -> Columns {
+        let mut gathered = Columns::zeros(columns, rows.len());
+        for j in 0..columns {
+            for (value, &row) in gathered.column_mut(j).iter_mut().zip(rows) {
+                *value = row_major[row * columns + j];
+            }
+        }
+        gathered
+    }
+
     /// Some rows, in the order given.
     pub(crate) fn picked(&self, rows: &[usize]) -> Columns {
         let mut picked = Columns::zeros(self.width(), rows.len());

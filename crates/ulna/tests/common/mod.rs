@@ -5,9 +5,9 @@ pub mod cases;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
 use ulna::artefacts::Noise;
-use ulna::kinematics::tip_mm;
+use ulna::kinematics::{Angles, Conditions, tip_mm};
 
 pub fn rng(seed: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(seed)
@@ -42,6 +42,7 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
     };
     Effects {
         harmonics: Some(harmonics),
+        backlash: Some(Backlash { rad: (0..n).map(|_| small(0.05)).collect() }),
         expansion: Some(Expansion { per_kelvin: (0..n).map(|_| small(1e-3)).collect() }),
         compliance: Some(Compliance {
             rad_per_nm: (0..n).map(|_| small(5e-3)).collect(),
@@ -54,6 +55,27 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
 /// Temperatures above 20 °C, one for each joint of each pose.
 pub fn warmth(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
     (0..count).map(|_| rng.random_range(-8.0..15.0)).collect()
+}
+
+/// From which side each joint of each pose was approached: any, unknown ones too.
+pub fn approach(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
+    (0..count).map(|_| f64::from(rng.random_range(-1..=1))).collect()
+}
+
+/// What was true at poses: of `joints` numbers each, warmth one or one for each joint.
+pub struct Told {
+    pub warmth_k: Vec<f64>,
+    pub approach: Vec<f64>,
+}
+
+impl Told {
+    pub fn any(rng: &mut Xoshiro256PlusPlus, poses: usize, warmths: usize, approaches: usize) -> Told {
+        Told { warmth_k: warmth(rng, poses * warmths), approach: approach(rng, poses * approaches) }
+    }
+
+    pub fn at<'a>(&'a self, q_rad: &'a [f64]) -> Angles<'a> {
+        Angles { q_rad, conditions: Conditions { warmth_k: &self.warmth_k, approach: &self.approach } }
+    }
 }
 
 fn any_joint(rng: &mut Xoshiro256PlusPlus, i: usize) -> Joint {

@@ -7,16 +7,15 @@ virtual arm with the parameters of its Table 4.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
+from ulna.ground.arrays import Progress
 from ulna.reproduce.cheng2011.convergence import study_convergence
 from ulna.reproduce.cheng2011.experiment import repeat_experiment, rerun_experiment
-from ulna.reproduce.cheng2011.findings import Findings
+from ulna.reproduce.cheng2011.rerun import Rerun
 from ulna.reproduce.cheng2011.simulation import rerun_simulation
 
 #: called with (stage, done, total)
-Progress = Callable[[str, int, int], None]
 
 #: all random numbers of a run come from it
 SEED = 2011
@@ -24,13 +23,13 @@ SEED = 2011
 
 def run(
     out: Path | None, progress: Progress | None, *, starts: int = 200, repeats: int = 100, force: bool = True
-) -> Findings:
+) -> Rerun:
     """Rerun the study. `starts`: wrong starts per size of error; `repeats`: of the whole virtual experiment, new noise.
 
     With a folder `out`, pictures (SVG and PNG) and `cheng2011.json` are written there, all or none; `force` False
     refuses to overwrite them. Raises UlnaInputError where they cannot be written, KeyboardInterrupt.
     """
-    found = Findings(
+    found = Rerun(
         simulation=rerun_simulation(SEED),
         convergence=study_convergence(SEED, starts, progress),
         experiment=rerun_experiment(SEED),

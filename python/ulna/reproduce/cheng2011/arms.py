@@ -6,8 +6,11 @@ import math
 
 import numpy as np
 
-from ulna.model import Arm, Joint, Probe
-from ulna.virtual.arm import ReadingErrors, VirtualArm
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.simulation.reading_errors import ReadingErrors
+from ulna.simulation.virtual_arm import VirtualArm
 
 _QUARTER = math.pi / 2
 

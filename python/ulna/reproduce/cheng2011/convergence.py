@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna import _core
-from ulna.model import Arm
+import ulna._core as _core
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import Progress
 from ulna.reproduce.cheng2011.arms import simulated
 from ulna.reproduce.cheng2011.simulation import length_problem, lengths_between, random_poses
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
 
 WRONG_BY_RAD = (0.1, 0.3, 1.0, 2.0, pi)
 WRONG_BY_MM = 100.0

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna import _core
-from ulna.model import Arm, Probe
+import ulna._core as _core
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
+from ulna.ground.arrays import F64, Progress
 from ulna.reproduce.cheng2011.arms import (
     BAR_MM,
     BENT_PROBE,
@@ -20,10 +20,7 @@ from ulna.reproduce.cheng2011.arms import (
     platinum,
     virtual,
 )
-from ulna.virtual.arm import as_drawn
-
-F64 = NDArray[np.float64]
-Progress = Callable[[str, int, int], None]
+from ulna.simulation.reading_errors import as_drawn
 
 BARS = 101
 FRESH_BARS = 10
@@ -136,7 +133,7 @@ def repeat_experiment(seed: int, repeats: int, progress: Progress | None) -> Rep
 def _touch_bars(arm: Arm, count: int, seed: int, rng: np.random.Generator) -> F64:
     """(count, 2, 7) encoder readings with the ball in both seats of a bar that is put in `count` random places."""
     of = virtual(arm)
-    ends_mm = of.places(BAR_ENDS_MM, count, seed, rng)
+    ends_mm = of.places(BAR_ENDS_MM, count, rng)
     return of.touch(ends_mm.reshape(-1, 3), seed, rng).reshape(count, 2, arm.n)
 
 
@@ -161,7 +158,7 @@ def _straight_probe(calibrated: Arm, truth: Arm, seed: int, rng: np.random.Gener
     guess = Probe(0.0, 0.0, 220.0)
     start = replace(calibrated, probes={"bent": guess})
     of = virtual(truth)
-    seat_mm = of.places(BAR_ENDS_MM, 1, seed, rng)[0, :1]  # one place within reach
+    seat_mm = of.places(BAR_ENDS_MM, 1, rng)[0, :1]  # one place within reach
     q_rad = of.touch(np.repeat(seat_mm, SEAT_POSES, axis=0), seed, rng)
     problem = _core.Problem(start.core, np.full(truth.n, ENCODER_RAD), SEAT_MM)
     none = np.zeros(SEAT_POSES, dtype=np.int64)

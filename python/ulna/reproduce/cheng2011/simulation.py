@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ulna import _core
-from ulna.model import Arm
+import ulna._core as _core
+from ulna.arm.arm import Arm
+from ulna.ground.arrays import F64
 from ulna.reproduce.cheng2011.arms import simulated
-
-F64 = NDArray[np.float64]
 
 LENGTHS = 101
 FRESH = 200

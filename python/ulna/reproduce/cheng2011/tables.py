@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.table import Table
@@ -11,10 +10,8 @@ from rich.text import Text
 
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_MM
 from ulna.reproduce.cheng2011.experiment import BARS, START_MM, START_RAD, Calibrated
+from ulna.reproduce.cheng2011.findings import Findings
 from ulna.reproduce.claims import agrees, claims_table, plain_table
-
-if TYPE_CHECKING:
-    from ulna.reproduce.cheng2011.findings import Findings
 
 
 def tables(found: Findings) -> RenderableType:

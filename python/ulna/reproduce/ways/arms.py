@@ -6,9 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.model import Arm, Joint, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
 from ulna.reproduce.cheng2011.arms import BAR_MM, BENT_PROBE, STRAIGHT_PROBE, platinum, virtual
-from ulna.virtual.arm import ReadingErrors, VirtualArm
+from ulna.simulation.reading_errors import ReadingErrors
+from ulna.simulation.virtual_arm import VirtualArm
 
 BAR_ENDS_MM = np.array([[0.0, 0.0, 0.0], [BAR_MM, 0.0, 0.0]])
 

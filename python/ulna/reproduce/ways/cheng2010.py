@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ulna.model import Arm, Probe
+from ulna.arm.arm import Arm
+from ulna.arm.probe import Probe
 from ulna.reproduce.claims import Claim
 from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX, true_arm
@@ -14,7 +15,7 @@ from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import WRONG_MM, Trial, calibrate, start_of
 from ulna.reproduce.ways.wang2007 import ARMS_FRAME
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work
-from ulna.virtual.arm import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 
 def _probe(truth: VirtualArm, seed: int) -> Trial:

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 from rich.console import RenderableType
 
-from ulna.files.output import output_folder
+from ulna.formats.output import output_folder
+from ulna.ground.arrays import Progress
 from ulna.reproduce.claims import FORMAT
 from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, shimojima2002, wang2007, wang2010
-from ulna.reproduce.ways.outcome import Outcome, Progress, Way, outcomes_of
+from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import Trial, start_of
 from ulna.reproduce.ways.work import REPEATS, outcome_dicts, outcomes_table, write_json
-from ulna.virtual.arm import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 WORKS = (shimojima2002, santolaria2010, wang2007, gao2009, wang2010, cheng2010)
 
@@ -52,7 +53,7 @@ class Comparison:
 
     def save(self, folder: Path, force: bool = False) -> None:
         """Write `all.json` and the picture (SVG and PNG) into a folder, all or none. Raises UlnaInputError."""
-        from ulna.reproduce.ways.picture import draw_ways
+        from ulna.reproduce.ways.plot import draw_ways
 
         with output_folder(folder, FILES, force) as staging:
             write_json(staging / FILES[0], self.as_dict())

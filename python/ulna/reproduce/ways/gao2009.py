@@ -11,7 +11,7 @@ from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, search_alone, start_of
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work, same_optimum
-from ulna.virtual.arm import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 
 def _known(truth: VirtualArm, seed: int) -> Trial:

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.ground.arrays import F64, Progress
 from ulna.reproduce.ways.arms import ARMS, true_arm
 from ulna.reproduce.ways.trial import CarryOut, Trial, errors_of
-
-Progress = Callable[[str, int, int], None]
 
 SEED = 2011
 
@@ -104,5 +102,5 @@ def _outcome(way: Way, arm: str, repeats: int, told: Callable[[], None]) -> Outc
     )
 
 
-def _rms(values: NDArray[np.float64]) -> float:
+def _rms(values: F64) -> float:
     return float(np.sqrt(np.mean(values**2)))

@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
-from ulna.study import Artefact, Readings
-from ulna.virtual.arm import VirtualArm
-
-F64 = NDArray[np.float64]
+from ulna.simulation.virtual_arm import VirtualArm
 
 TOUCHES = 280
 
@@ -82,7 +81,7 @@ def lengths_alone(of_ball_bar: Readings) -> Readings:
 def coordinates(truth: VirtualArm, seed: int, in_arms_frame: bool) -> Readings:
     """Points anywhere whose coordinates a measuring machine gives: in the arm's base frame, or in its own."""
     rng = np.random.default_rng([seed, 3])
-    at_mm = truth.arm.tip(truth.poses(TOUCHES, rng))
+    at_mm = truth.arm.tip(truth.anywhere(TOUCHES, rng))
     known_mm = at_mm if in_arms_frame else at_mm @ _turned() + np.array([900.0, -400.0, 250.0])
     artefact = Artefact("machine", "points", _features(known_mm), frame="arm" if in_arms_frame else "free")
     return _touches(artefact, truth.touch(at_mm, seed, rng), np.arange(TOUCHES), np.zeros(TOUCHES, np.int64))
@@ -91,7 +90,7 @@ def coordinates(truth: VirtualArm, seed: int, in_arms_frame: bool) -> Readings:
 def seat(truth: VirtualArm, seed: int, known: bool, poses: int = TOUCHES) -> Readings:
     """One seat in many poses; its coordinates in the arm's base frame known or not."""
     rng = np.random.default_rng([seed, 3])
-    at_mm = truth.places(BAR_ENDS_MM, 1, seed, rng)[0, :1]
+    at_mm = truth.places(BAR_ENDS_MM, 1, rng)[0, :1]
     q_rad = truth.touch(np.repeat(at_mm, poses, axis=0), seed, rng)
     none = np.zeros(poses, np.int64)
     artefact = Artefact("cone", "points", _features(at_mm), frame="arm") if known else FREE_SEAT
@@ -100,13 +99,13 @@ def seat(truth: VirtualArm, seed: int, known: bool, poses: int = TOUCHES) -> Rea
 
 def _standing(truth: VirtualArm, artefact: Artefact, features_mm: F64, places: int, each: int, seed: int) -> Readings:
     rng = np.random.default_rng([seed, 3])
-    at_mm = np.repeat(truth.places(features_mm, places, seed, rng), each, axis=1).reshape(-1, 3)
+    at_mm = np.repeat(truth.places(features_mm, places, rng), each, axis=1).reshape(-1, 3)
     feature = np.tile(np.repeat(np.arange(len(features_mm)), each), places)
     placement = np.repeat(np.arange(places), len(features_mm) * each)
     return _touches(artefact, truth.touch(at_mm, seed, rng), feature, placement)
 
 
-def _touches(artefact: Artefact, q_rad: F64, feature: NDArray[np.int64], placement: NDArray[np.int64]) -> Readings:
+def _touches(artefact: Artefact, q_rad: F64, feature: I64, placement: I64) -> Readings:
     count = len(q_rad)
     none = np.zeros(count, np.int64)
     labels = placement.astype(str).astype(object)

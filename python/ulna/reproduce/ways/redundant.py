@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import ulna
-from ulna.model import Joint, Probe
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.calibration.identify import identify
 from ulna.reproduce.ways.trial import Trial, study_of
 
 
@@ -16,5 +17,5 @@ def determined_of_full_link(trial: Trial, hold: tuple[str, ...] = ()) -> tuple[i
     link = Joint(theta0_rad=0.3, alpha_rad=0.7, a_mm=25.0, d_mm=80.0)  # any will do: link and tip are one rigid body
     probe = Probe(0.0, 0.0, tip.z_mm) if hold else tip
     arm = replace(start, joints=(*start.joints[:-1], link), probes={"bent": probe}, full_last_link=True)
-    found = ulna.identify(study_of(arm, trial.readings, hold=list(hold)))
+    found = identify(study_of(arm, trial.readings, hold=list(hold)))
     return found.parameters, found.determined

@@ -8,19 +8,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-import ulna
-from ulna.assembly import assemble
-from ulna.estimators import search_box
-from ulna.model import Arm
+from ulna.arm.arm import Arm
+from ulna.artefacts.readings import Readings
+from ulna.calibration.calibrate import calibrate as run_calibrate
+from ulna.calibration.estimators import search_box
+from ulna.calibration.result import Result
+from ulna.ground.arrays import F64
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
-from ulna.study import FitOptions, Noise, Readings, Study
-from ulna.virtual.arm import VirtualArm, as_drawn
-
-F64 = NDArray[np.float64]
+from ulna.simulation.reading_errors import as_drawn
+from ulna.simulation.virtual_arm import VirtualArm
+from ulna.study.assembly import assemble
+from ulna.study.data import FitOptions, Noise
+from ulna.study.study import Study
 
 WRONG_RAD, WRONG_MM = 0.1, 2.0
 """How far off the drawing is that every calibration starts from: zero offsets, and lengths. Twists are right angles."""
@@ -43,7 +45,7 @@ class Trial:
     """As found."""
     seconds: float
     """Of the calibration alone."""
-    result: ulna.Result | None
+    result: Result | None
     """None where nothing but a search without derivatives was run, which says nothing of uncertainty."""
 
     @property
@@ -92,7 +94,7 @@ def calibrate(truth: VirtualArm, start: Arm, readings: Readings, **fit: Any) -> 
     """Calibrate by these readings."""
     study = study_of(start, readings, budget=BUDGET, **fit)
     began = time.perf_counter()
-    result = ulna.calibrate(study)
+    result = run_calibrate(study)
     return Trial(truth, start, readings, result.arm, time.perf_counter() - began, result)
 
 
@@ -107,10 +109,10 @@ def search_alone(truth: VirtualArm, start: Arm, readings: Readings, **fit: Any) 
 def errors_of(arm: Arm, truth: VirtualArm, seed: int) -> Errors:
     """Of fresh bars and fresh points, the same for every way with the same seed."""
     rng = np.random.default_rng([seed, 2])
-    ends_mm = truth.places(BAR_ENDS_MM, FRESH_BARS, seed, rng)
+    ends_mm = truth.places(BAR_ENDS_MM, FRESH_BARS, rng)
     q_rad = truth.touch(ends_mm.reshape(-1, 3), seed, rng)
     length_mm, true_length_mm = _lengths_mm(arm, q_rad), _lengths_mm(truth.arm, q_rad)
-    anywhere = truth.poses(FRESH_POINTS, rng)
+    anywhere = truth.anywhere(FRESH_POINTS, rng)
     true_mm, found_mm = truth.arm.tip(anywhere), arm.tip(anywhere)
     true_mm, found_mm = true_mm - true_mm.mean(axis=0), found_mm - found_mm.mean(axis=0)
     turn, _ = Rotation.align_vectors(true_mm, found_mm)

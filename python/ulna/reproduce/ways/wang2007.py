@@ -9,7 +9,7 @@ from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, start_of
 from ulna.reproduce.ways.work import UNKNOWN, Found, Work
-from ulna.virtual.arm import VirtualArm
+from ulna.simulation.virtual_arm import VirtualArm
 
 
 def _in_arms_frame(truth: VirtualArm, seed: int) -> Trial:

@@ -13,11 +13,12 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ulna.files.output import output_folder
+from ulna.formats.output import output_folder
+from ulna.ground.arrays import Progress
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.claims import FORMAT, Claim, claims_table, plain_table
 from ulna.reproduce.ways.arms import ARMS, SEVEN, SIX
-from ulna.reproduce.ways.outcome import Outcome, Progress, Way, outcomes_of
+from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import FRESH_BARS, WRONG_MM, WRONG_RAD
 
 REPEATS = 10

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.figures.figure import Definition, Figure, points_of, spread_of
-
-F64 = NDArray[np.float64]
 
 STANDARD = "ASME B89.4.22-2004 (R2019)"
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
-
-F64 = NDArray[np.float64]
+from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Definition:
     """In words and signs; lengths in mm."""
     standard: str
     """Its source."""
-    unit: str = "mm"
+    unit: Literal["mm"] = "mm"
 
     def of(self, value: ArrayLike) -> Figure:
         """With a value of each test."""

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ulna.errors import UlnaInputError
-from ulna.files.verify_tables import Ends
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
+from ulna.verification.certified import Ends
 from ulna.verification.figures.figure import points_of
-
-F64 = NDArray[np.float64]
 
 FORMULAS: dict[str, str] = {
     "seats": "distance between the means of the touches in seats A and B",

@@ -2,19 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Literal
+
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import ArticulationTest
-from ulna.files.touches import Touches
+from ulna.formats.numbers import Count
 from ulna.geometry.enclosing import enclosing_sphere
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each
 from ulna.verification.figures.iso_10360_12 import L_DIA
+from ulna.verification.kinds.kind import TestKind, TestTable
+from ulna.verification.kinds.steps import Step
+from ulna.verification.kinds.wanted import WantedBall
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.touches import Touches
 
 
-def articulation(name: str, table: ArticulationTest, touches: Touches, bench: Bench) -> Found:
+class ArticulationTest(TestTable):
+    """L_Dia: one ball touched in several orientations of the probe."""
+
+    kind: Literal["articulation"]
+    orientations: Count
+    points: Count
+    """In each orientation."""
+
+
+BALL = WantedBall()
+
+
+def _steps(name: str, table: ArticulationTest) -> Iterator[Step]:
+    for orientation in range(1, table.orientations + 1):
+        what = f"probe in orientation {orientation}: touch the ball over half of it"
+        yield from [Step(name, BALL.name, "1", str(orientation), what=what)] * table.points
+
+
+def _evaluate(name: str, table: ArticulationTest, touches: Touches, bench: Bench) -> Found:
     """Each ball in each position is a measurement of all orientations. Raises UlnaInputError."""
     values, points, departures = [], {}, []
     for (artefact, position), standing in touches.groups(("artefact", "position")):
@@ -34,3 +58,16 @@ def articulation(name: str, table: ArticulationTest, touches: Touches, bench: Be
         departures += counted("orientations of the probe", len(centres), table.orientations)
     departures += counted_each("points in an orientation", points, table.points)
     return Found([(L_DIA, values)], departures)
+
+
+ARTICULATION = TestKind(
+    table=ArticulationTest,
+    figures=lambda table: [L_DIA],
+    artefacts=lambda table: [BALL],
+    steps=_steps,
+    evaluate=_evaluate,
+    limits={"L_Dia": 0.060},
+    length_errors=False,
+    words=(),
+    examples=lambda: [ArticulationTest(kind="articulation", orientations=3, points=5)],
+)

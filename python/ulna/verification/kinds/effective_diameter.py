@@ -2,19 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Literal
+
 import numpy as np
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import DiameterTest
-from ulna.files.touches import Touches
+from ulna.formats.numbers import Count
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
 from ulna.verification.budget import Budget
 from ulna.verification.figures.asme_b89_4_22 import DIAMETER, DIAMETER_SPREAD, DIAMETER_WORST, effective_diameter_of
+from ulna.verification.kinds.kind import TestKind, TestTable
+from ulna.verification.kinds.steps import Step
+from ulna.verification.kinds.wanted import WantedBall
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.touches import Touches
 
 
-def effective_diameter(name: str, table: DiameterTest, touches: Touches, bench: Bench) -> Found:
+class DiameterTest(TestTable):
+    """Effective diameter: one ball measured several times."""
+
+    kind: Literal["effective-diameter"]
+    repeats: Count
+    points: Count
+    """Of each measurement."""
+
+
+BALL = WantedBall()
+
+
+def _steps(name: str, table: DiameterTest) -> Iterator[Step]:
+    for repeat in range(1, table.repeats + 1):
+        what = f"ball near middle reach, measurement {repeat}: touch it all around"
+        yield from [Step(name, BALL.name, repeat=str(repeat), what=what)] * table.points
+
+
+def _evaluate(name: str, table: DiameterTest, touches: Touches, bench: Bench) -> Found:
     """Each ball is measured in several repeats. Raises UlnaInputError."""
     means, worst, spreads, departures = [], [], [], []
     for (artefact,), standing in touches.groups(("artefact",)):
@@ -46,3 +70,16 @@ def effective_diameter(name: str, table: DiameterTest, touches: Touches, bench: 
 def _of_spread() -> Budget:
     """The same ball each time: what is wrong with its calibration is in no difference."""
     return Budget([], ["nothing of the artefact: it is the same in every measurement"])
+
+
+EFFECTIVE_DIAMETER = TestKind(
+    table=DiameterTest,
+    figures=lambda table: [DIAMETER, DIAMETER_WORST, DIAMETER_SPREAD],
+    artefacts=lambda table: [BALL],
+    steps=_steps,
+    evaluate=_evaluate,
+    limits={"Diameter_max": 0.040},
+    length_errors=False,
+    words=(),
+    examples=lambda: [DiameterTest(kind="effective-diameter", repeats=3, points=9)],
+)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from ulna.errors import UlnaInputError
-from ulna.files.touches import Touches
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Length, called, tip_mm
 from ulna.verification.figures.lengths import OPPOSING, length_between
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.touches import Touches
+
+LONGEST_SHARE = 0.66
+"""Of the range, where a profile does not say it."""
+WORDS = ("verification.lengths", "verification.no-mpe", "axis.length-mm", "axis.length-error-mm")
+"""Of a drawing of errors over lengths."""
 
 
 def measured_lengths(name: str, touches: Touches, bench: Bench) -> list[tuple[Length, Single]]:

@@ -2,20 +2,59 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
+from typing import Literal
 
-from ulna.errors import UlnaInputError
-from ulna.files.profile_tables import VolumetricTest
-from ulna.files.touches import Touches
+import numpy as np
+from pydantic import Field
+
+from ulna.formats.numbers import Count, Shares
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.bench import Bench, Found, counted, within_shares
-from ulna.verification.figures.asme_b89_4_22 import VOLUMETRIC_MAX
+from ulna.verification.figures.asme_b89_4_22 import (
+    VOLUMETRIC_2RMS,
+    VOLUMETRIC_2S,
+    VOLUMETRIC_HALF_RANGE,
+    VOLUMETRIC_MAX,
+)
 from ulna.verification.figures.asme_b89_4_22 import volumetric as asme
 from ulna.verification.figures.lengths import OPPOSING
-from ulna.verification.kinds.measured_lengths import measured_lengths
+from ulna.verification.kinds.kind import TestKind, TestTable
+from ulna.verification.kinds.measured_lengths import LONGEST_SHARE, WORDS, measured_lengths
+from ulna.verification.kinds.steps import Step
+from ulna.verification.kinds.wanted import WantedLength
 from ulna.verification.outcome import Labels, Single
+from ulna.verification.touches import Touches
 
 
-def volumetric(name: str, table: VolumetricTest, touches: Touches, bench: Bench) -> Found:
+class VolumetricTest(TestTable):
+    """A ball bar in various places and directions."""
+
+    kind: Literal["volumetric"]
+    positions: Count
+    """Lengths in all, of all bars."""
+    lengths: Count
+    """Bars."""
+    shares: Shares = Field(default_factory=list)
+    """Of the reach, half the range: [least, most] length of each bar, the shortest bar first."""
+
+
+def _artefacts(table: VolumetricTest) -> list[WantedLength]:
+    """In the middle of what is asked; bars beyond the shares are as long as the last."""
+    shares = [0.25 * (least + most) for least, most in table.shares] or [LONGEST_SHARE * 0.5]
+    shares += shares[-1:] * (table.lengths - len(shares))
+    return [WantedLength(f"bar-{k}", share, "seats") for k, share in enumerate(shares[: table.lengths], start=1)]
+
+
+def _steps(name: str, table: VolumetricTest) -> Iterator[Step]:
+    """The bars take turns in the numbers of places, but one is measured after the other."""
+    bars = _artefacts(table)
+    places = [(bars[k % len(bars)], str(k + 1)) for k in range(table.positions)]
+    for bar, place in sorted(places, key=lambda each: each[0].name):
+        yield from bar.steps(name, place)
+
+
+def _evaluate(name: str, table: VolumetricTest, touches: Touches, bench: Bench) -> Found:
     """Each bar in each position (and repeat) is a deviation. Raises UlnaInputError."""
     measured = measured_lengths(name, touches, bench)
     if len(measured) < 2:
@@ -55,3 +94,16 @@ def _shares(bars: dict[str, float], table: VolumetricTest, bench: Bench) -> list
     if bench.range_mm is None:
         return ["the measuring range is not stated (key 'range'): the lengths of the bars were not checked."]
     return within_shares("bar", bars, table.shares, bench.range_mm)
+
+
+VOLUMETRIC = TestKind(
+    table=VolumetricTest,
+    figures=lambda table: [VOLUMETRIC_MAX, VOLUMETRIC_2S, VOLUMETRIC_HALF_RANGE, VOLUMETRIC_2RMS],
+    artefacts=_artefacts,
+    steps=_steps,
+    evaluate=_evaluate,
+    limits={"Volumetric_max": 0.080, "Volumetric_2S": 0.080},
+    length_errors=True,
+    words=WORDS,
+    examples=lambda: [VolumetricTest(kind="volumetric", positions=6, lengths=2, shares=[[0.5, 0.75], [0.8, 1.0]])],
+)

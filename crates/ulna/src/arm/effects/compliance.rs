@@ -1,6 +1,8 @@
 //! Joints that give way to the weight of what they carry.
 
-use super::effect::Effect;
+use super::effect::{Effect, FromStated};
+use super::seen::{Lost, Unseen};
+use super::stated::Stated;
 use crate::arm::unit::Unit;
 use crate::error::{Error, Result};
 
@@ -31,6 +33,8 @@ const NM_PER_KG_MM: f64 = 9.80665e-3;
 
 /// An axis this much out of plumb is upright, rad.
 const UPRIGHT: f64 = 1e-9;
+/// A joint that gives way by more than this for a newton metre is broken, rad.
+const MOST_RAD_PER_NM: f64 = 1e-3;
 
 impl Compliance {
     /// Gravity as a vector that makes N m of kg mm.
@@ -38,19 +42,40 @@ impl Compliance {
         let norm = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         self.gravity.map(|g| NM_PER_KG_MM * g / norm)
     }
+}
 
-    /// Whether gravity pulls another way than along the first axis.
-    pub(crate) fn leans(&self) -> bool {
-        self.gravity[0].hypot(self.gravity[1]) > UPRIGHT * self.gravity[2].abs()
+impl Effect for Compliance {
+    fn kind(&self) -> &'static str {
+        Self::KIND
     }
 
-    /// Largest moment that gravity could make about any axis of an arm with this reach, N m.
-    pub(crate) fn most_nm(&self, reach_mm: f64) -> f64 {
+    fn suffixes(&self) -> Vec<String> {
+        vec!["compliance".into()]
+    }
+
+    fn unit(&self) -> Unit {
+        Unit::RadPerNewtonMetre
+    }
+
+    fn values(&self) -> &[f64] {
+        &self.rad_per_nm
+    }
+
+    fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.rad_per_nm
+    }
+
+    /// By the largest moment that gravity could make about any axis of an arm with this reach.
+    fn moves_mm(&self, reach_mm: f64) -> f64 {
         let mass: f64 = self.bodies.iter().map(|body| body.mass_kg).sum();
-        NM_PER_KG_MM * mass * reach_mm
+        reach_mm * (NM_PER_KG_MM * mass * reach_mm).max(f64::MIN_POSITIVE)
     }
 
-    pub(super) fn check(&self) -> Result<()> {
+    fn known(&self, _: f64) -> f64 {
+        MOST_RAD_PER_NM
+    }
+
+    fn check(&self) -> Result<()> {
         if self.bodies.len() != self.rad_per_nm.len() {
             return Err(Error::Shape {
                 what: "the masses".into(),
@@ -80,26 +105,35 @@ impl Compliance {
         }
         Ok(())
     }
+
+    /// Gravity that pulls another way than along the first axis does.
+    fn sees_the_base_turn(&self) -> bool {
+        self.gravity[0].hypot(self.gravity[1]) > UPRIGHT * self.gravity[2].abs()
+    }
+
+    fn unseen(&self, lost: &Lost) -> Option<Unseen> {
+        let &joint = lost.joints.first().filter(|joint| lost.alone && lost.hidden != Some(**joint))?;
+        let name = joint + 1;
+        Some(Unseen {
+            cause: "no-moment",
+            because: format!(
+                "gravity makes no moment about the axis of joint {name}: it is upright, or carries no stated mass"
+            ),
+            remedy: format!("hold joint.{name}.compliance: nothing depends on it while the arm stands so"),
+        })
+    }
 }
 
-impl Effect for Compliance {
-    fn names(&self) -> Vec<String> {
-        (1..=self.rad_per_nm.len()).map(|joint| format!("joint.{joint}.compliance")).collect()
-    }
+impl FromStated for Compliance {
+    const KIND: &'static str = "compliance";
 
-    fn unit(&self) -> Unit {
-        Unit::RadPerNewtonMetre
-    }
-
-    fn values(&self) -> Vec<f64> {
-        self.rad_per_nm.clone()
-    }
-
-    fn set(&mut self, values: &[f64]) {
-        self.rad_per_nm.copy_from_slice(values);
-    }
-
-    fn joints(&self) -> usize {
-        self.rad_per_nm.len()
+    fn from_stated(given: &mut Stated, joints: usize) -> Result<Self> {
+        let rad_per_nm = given.take("compliance_rad_per_nm", &[joints])?;
+        let masses_kg = given.take("masses_kg", &[joints])?;
+        let centres_mm = given.take("centres_mm", &[joints, 3])?;
+        let gravity = given.take("gravity", &[3])?;
+        let body = |(&mass_kg, c): (&f64, &[f64])| Body { mass_kg, centre_mm: [c[0], c[1], c[2]] };
+        let bodies = masses_kg.iter().zip(centres_mm.chunks_exact(3)).map(body).collect();
+        Ok(Compliance { rad_per_nm, bodies, gravity: [gravity[0], gravity[1], gravity[2]] })
     }
 }

@@ -1,17 +1,75 @@
-//! What a cause has to say.
+//! What every effect owes: its parameters, what is known of them, why readings may not show them.
 
+use super::seen::{Lost, Unseen};
+use super::stated::Stated;
 use crate::arm::unit::Unit;
+use crate::error::Result;
+use std::fmt::Debug;
 
-/// The parameters of one cause, joint after joint.
-pub trait Effect {
-    /// Names such as `joint.3.c1`.
-    fn names(&self) -> Vec<String>;
+/// The parameters of one cause, as many for each joint, joint after joint.
+pub trait Effect: Debug + Send + Sync {
+    /// The word by which a study asks for it, such as `"backlash"`.
+    fn kind(&self) -> &'static str;
+
+    /// The last parts of the names of a joint's parameters: `c1`, `s1` of `joint.3.c1`, `joint.3.s1`.
+    fn suffixes(&self) -> Vec<String>;
+
     /// What they are all measured in.
     fn unit(&self) -> Unit;
+
     /// Their values.
-    fn values(&self) -> Vec<f64>;
-    /// Takes other values.
-    fn set(&mut self, values: &[f64]);
+    fn values(&self) -> &[f64];
+
+    /// Their values, to be changed.
+    fn values_mut(&mut self) -> &mut [f64];
+
+    /// How far a unit of a parameter moves the tip of an arm of this reach at the most, in round figures, mm.
+    fn moves_mm(&self, reach_mm: f64) -> f64;
+
+    /// Standard uncertainty of a parameter before any reading, where the arm's angles are known to `angle_rad`.
+    fn known(&self, angle_rad: f64) -> f64;
+
+    /// What is not a parameter makes sense.
+    ///
+    /// # Errors
+    /// A number out of its range, or another count of numbers than joints.
+    fn check(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Whether it tells a base turned about the first axis from one that is not.
+    fn sees_the_base_turn(&self) -> bool {
+        false
+    }
+
+    /// Why parameters of it that take part in a lost direction had no chance to show in the readings.
+    fn unseen(&self, _: &Lost) -> Option<Unseen> {
+        None
+    }
+}
+
+impl dyn Effect + '_ {
     /// Number of joints.
-    fn joints(&self) -> usize;
+    pub fn joints(&self) -> usize {
+        self.values().len() / self.suffixes().len().max(1)
+    }
+
+    /// Names of all parameters, such as `joint.3.c1`.
+    pub fn names(&self) -> Vec<String> {
+        let suffixes = self.suffixes();
+        let of_joint = |joint| suffixes.iter().map(move |suffix| format!("joint.{joint}.{suffix}"));
+        (1..=self.joints()).flat_map(of_joint).collect()
+    }
+}
+
+/// How an effect is made of numbers that have names.
+pub trait FromStated: Effect + Sized {
+    /// The word by which a study asks for it.
+    const KIND: &'static str;
+
+    /// Of an arm with so many joints.
+    ///
+    /// # Errors
+    /// An array that is missing or has another shape, or a number out of its range.
+    fn from_stated(given: &mut Stated, joints: usize) -> Result<Self>;
 }

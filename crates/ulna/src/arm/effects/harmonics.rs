@@ -1,7 +1,12 @@
 //! Eccentric encoders: an error that repeats with the encoder's turn.
 
-use super::effect::Effect;
+use super::effect::{Effect, FromStated};
+use super::on_encoder::{Encoder, EncoderLanes, OnEncoder};
+use super::stated::Stated;
 use crate::arm::unit::Unit;
+use crate::error::{Error, Result};
+use crate::simd::Lanes;
+use pulp::Simd;
 
 /// `q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i` in place of each encoder angle `q_i`.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,51 +22,90 @@ impl Harmonics {
     pub fn zero(orders: &[u32], joints: usize) -> Harmonics {
         Harmonics { orders: orders.to_vec(), amplitudes_rad: vec![[0.0; 2]; orders.len() * joints] }
     }
-
-    /// Order and amplitudes of one joint.
-    pub fn of_joint(&self, joint: usize) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
-        let own = &self.amplitudes_rad[joint * self.orders.len()..][..self.orders.len()];
-        self.orders.iter().copied().zip(own.iter().copied())
-    }
-
-    /// What is added to a joint's encoder angle, rad.
-    pub fn added_rad(&self, joint: usize, q_rad: f64) -> f64 {
-        self.of_joint(joint)
-            .map(|(k, [c, s])| c * (f64::from(k) * q_rad).cos() + s * (f64::from(k) * q_rad).sin())
-            .sum()
-    }
-
-    /// Derivative of [`Self::added_rad`] with respect to the encoder angle.
-    pub fn slope(&self, joint: usize, q_rad: f64) -> f64 {
-        let of = |(k, [c, s]): (u32, [f64; 2])| {
-            let k = f64::from(k);
-            k * (s * (k * q_rad).cos() - c * (k * q_rad).sin())
-        };
-        self.of_joint(joint).map(of).sum()
-    }
 }
 
 impl Effect for Harmonics {
-    fn names(&self) -> Vec<String> {
-        let each = |joint: usize| {
-            self.orders.iter().flat_map(move |k| ["c", "s"].map(|part| format!("joint.{}.{part}{k}", joint + 1)))
-        };
-        (0..self.joints()).flat_map(each).collect()
+    fn kind(&self) -> &'static str {
+        Self::KIND
+    }
+
+    fn suffixes(&self) -> Vec<String> {
+        self.orders.iter().flat_map(|k| ["c", "s"].map(|part| format!("{part}{k}"))).collect()
     }
 
     fn unit(&self) -> Unit {
         Unit::Rad
     }
 
-    fn values(&self) -> Vec<f64> {
-        self.amplitudes_rad.as_flattened().to_vec()
+    fn values(&self) -> &[f64] {
+        self.amplitudes_rad.as_flattened()
     }
 
-    fn set(&mut self, values: &[f64]) {
-        self.amplitudes_rad.as_flattened_mut().copy_from_slice(values);
+    fn values_mut(&mut self) -> &mut [f64] {
+        self.amplitudes_rad.as_flattened_mut()
     }
 
-    fn joints(&self) -> usize {
-        self.amplitudes_rad.len() / self.orders.len().max(1)
+    fn moves_mm(&self, reach_mm: f64) -> f64 {
+        reach_mm
+    }
+
+    fn known(&self, angle_rad: f64) -> f64 {
+        angle_rad
+    }
+
+    fn check(&self) -> Result<()> {
+        let ascend = self.orders.first() >= Some(&1) && self.orders.windows(2).all(|pair| pair[0] < pair[1]);
+        if ascend { Ok(()) } else { Err(Error::Orders(self.orders.clone())) }
+    }
+}
+
+impl FromStated for Harmonics {
+    const KIND: &'static str = "encoder-harmonics";
+
+    fn from_stated(given: &mut Stated, joints: usize) -> Result<Self> {
+        let order = |value: f64| {
+            let whole = value.fract() == 0.0 && (1.0..=1e6).contains(&value);
+            let expected = "a whole number from 1 to 1e6";
+            let slip = || Error::OutOfRange { what: "an order of harmonics".into(), value, expected };
+            whole.then_some(value as u32).ok_or_else(slip)
+        };
+        let orders: Vec<u32> = given.take_list("orders")?.into_iter().map(order).collect::<Result<_>>()?;
+        let amplitudes_rad = given.take("amplitudes_rad", &[joints, orders.len(), 2])?;
+        let amplitudes_rad = amplitudes_rad.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        Ok(Harmonics { orders, amplitudes_rad })
+    }
+}
+
+impl OnEncoder for Harmonics {
+    fn shapes(&self, at: Encoder) -> Vec<f64> {
+        self.orders.iter().flat_map(|&k| [(f64::from(k) * at.q_rad).cos(), (f64::from(k) * at.q_rad).sin()]).collect()
+    }
+
+    fn slopes(&self, at: Encoder) -> Vec<f64> {
+        let each = |&k: &u32| {
+            let k = f64::from(k);
+            [-k * (k * at.q_rad).sin(), k * (k * at.q_rad).cos()]
+        };
+        self.orders.iter().flat_map(each).collect()
+    }
+
+    #[inline(always)]
+    fn shapes_of_joint(&self) -> usize {
+        2 * self.orders.len()
+    }
+
+    /// cos kq and sin kq from cos q and sin q, order by order.
+    #[inline(always)]
+    fn shapes_in_lanes<S: Simd>(&self, _: S, at: &impl EncoderLanes<S>, mut each: impl FnMut(usize, Lanes<S>)) {
+        let (sin_q, cos_q) = at.sin_cos();
+        let (mut sin, mut cos, mut order) = (sin_q, cos_q, 1);
+        for (number, &k) in self.orders.iter().enumerate() {
+            while order < k {
+                (sin, cos) = (sin.mul_add(cos_q, cos * sin_q), sin.neg_mul_add(sin_q, cos * cos_q));
+                order += 1;
+            }
+            each(2 * number, cos);
+            each(2 * number + 1, sin);
+        }
     }
 }

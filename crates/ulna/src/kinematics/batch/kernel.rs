@@ -7,20 +7,22 @@
 
 use super::compliance;
 use crate::kinematics::chain::{Chain, Link};
-use crate::kinematics::poses::Poses;
+use crate::kinematics::poses::{EncoderOf, Poses};
 use crate::simd::{Lanes, PAD};
 use pulp::{NullaryFnOnce, Simd};
 
 /// Vectors remembered for each joint: sin and cos of the turn, X, Y and z of the point, and x, z before beta.
 const SLOTS: usize = 7;
-/// And of an arm with effects: sin and cos of the encoder angle, warmth and stretch of the link.
-const EFFECT_SLOTS: usize = 4;
+/// And of an arm with effects: warmth and stretch of the link.
+const EFFECT_SLOTS: usize = 2;
 
 /// Where things stand in the scratch of a chain, in vectors.
 #[derive(Clone, Copy)]
 struct Layout {
     effects: usize,
     tip: usize,
+    /// of each parameter that adds to the angle of an encoder: its derivative
+    shapes: usize,
     compliance: usize,
     kept: usize,
     end: usize,
@@ -32,9 +34,10 @@ impl Layout {
         let n = chain.links.len();
         let effects = n * SLOTS;
         let tip = effects + n * EFFECT_SLOTS;
-        let compliance = tip + 3;
-        let kept = compliance + if chain.compliance.is_some() { n * compliance::SLOTS } else { 0 };
-        Layout { effects, tip, compliance, kept, end: kept + chain.turn_column() + 1 }
+        let shapes = tip + 3;
+        let compliance = shapes + chain.columns.on_encoders;
+        let kept = compliance + if chain.carried.is_some() { n * compliance::SLOTS } else { 0 };
+        Layout { effects, tip, shapes, compliance, kept, end: kept + chain.turn_column() + 1 }
     }
 }
 
@@ -104,12 +107,12 @@ fn forward_with_effects<S: Simd>(
 ) -> [Lanes<S>; 3] {
     let c = |value: f64| Lanes::splat(simd, value);
     let layout = Layout::of(chain);
-    if let Some(carried) = &chain.compliance {
+    if let Some(carried) = &chain.carried {
         compliance::prepare(simd, chain, carried, poses, k, region::<S>(scratch, layout.compliance));
     }
     let last = chain.links.len() - 1;
     let stretch = |i: usize| {
-        let epsilon = chain.expansion.as_ref().map_or(0.0, |each| each[i]);
+        let epsilon = chain.effects.expansion.as_ref().map_or(0.0, |expansion| expansion.per_kelvin[i]);
         poses.warmth(simd, i, k).mul_add(c(epsilon), c(1.0))
     };
     let own = |scratch: &mut [f64], i: usize, slot: usize, value: Lanes<S>| {
@@ -127,21 +130,26 @@ fn forward_with_effects<S: Simd>(
         #[inline(always)]
         |scratch, i, link| {
             let mut added = c(0.0);
-            if let Some(harmonics) = &chain.harmonics {
-                let (sin_q, cos_q) = poses.sin_cos_q(simd, i, k);
-                own(scratch, i, 0, sin_q);
-                own(scratch, i, 1, cos_q);
-                added = harmonics.added(simd, i, sin_q, cos_q) * c(link.sign);
-            }
-            if let Some(carried) = &chain.compliance {
+            chain.effects.shapes_in_lanes(
+                simd,
+                i,
+                &EncoderOf { simd, poses, joint: i, k },
+                #[inline(always)]
+                |parameter, value, shape| {
+                    shape.store(scratch, layout.shapes + parameter);
+                    added = shape.mul_add(c(value), added);
+                },
+            );
+            added = added * c(link.sign);
+            if let Some(compliance) = &chain.effects.compliance {
                 let moment = compliance::moment(simd, region::<S>(scratch, layout.compliance), i);
-                added = moment.mul_add(c(carried.rad_per_nm[i]), added);
+                added = moment.mul_add(c(compliance.rad_per_nm[i]), added);
             }
             let (sin, cos) = poses.turn(simd, link, i, k);
             let (sin_added, cos_added) = added.sin_cos();
             let turn = (sin.mul_add(cos_added, cos * sin_added), sin.neg_mul_add(sin_added, cos * cos_added));
-            own(scratch, i, 2, poses.warmth(simd, i, k));
-            own(scratch, i, 3, stretch(i));
+            own(scratch, i, 0, poses.warmth(simd, i, k));
+            own(scratch, i, 1, stretch(i));
             (turn, Some(stretch(i)))
         },
     )
@@ -285,57 +293,48 @@ fn columns_with_effects<'a, S: Simd>(
     let layout = Layout::of(chain);
     let joints = chain.joint_parameter_count();
     let last = chain.links.len() - 1;
-    let harmonic = joints + 3;
-    let expansion = harmonic + chain.harmonics.as_ref().map_or(0, |h| h.of_joint() * (last + 1));
-    let compliant = expansion + chain.expansion.as_ref().map_or(0, Vec::len);
+    let effect = chain.effect_column();
+    let (expansion, compliant) = (effect + chain.columns.expansion, effect + chain.columns.compliance);
+    let grows = chain.effects.expansion.is_some();
     let (below, kept) = scratch.split_at_mut(layout.kept * S::F64_LANES);
     let kept = region::<S>(kept, 0);
     let mut g = direction;
     for (i, link) in chain.links.iter().enumerate() {
         let [turn, alpha, a, fourth] = through(simd, link, i, below, &mut g);
         let own = |slot: usize| Lanes::load(simd, below, layout.effects + i * EFFECT_SLOTS + slot);
-        if let Some(harmonics) = &chain.harmonics {
-            let signed = turn * Lanes::splat(simd, link.sign);
-            let first = harmonic + i * harmonics.of_joint();
-            harmonics.waves(
-                own(0),
-                own(1),
-                #[inline(always)]
-                |number, cos, sin| {
-                    (signed * cos).store(kept, first + 2 * number);
-                    (signed * sin).store(kept, first + 2 * number + 1);
-                },
-            );
+        let signed = turn * Lanes::splat(simd, link.sign);
+        for parameter in chain.columns.of_encoder(i) {
+            (signed * Lanes::load(simd, below, layout.shapes + parameter)).store(kept, effect + parameter);
         }
-        let stretch = own(3);
+        let stretch = own(1);
         let (along_d, fourth) = match link.beta {
             None => (fourth, fourth * stretch),
             Some(_) => (Lanes::splat(simd, 0.0), fourth),
         };
-        if chain.expansion.is_some() {
+        if grows {
             let length = |value: f64| Lanes::splat(simd, value);
             let grown = if link.bare { length(0.0) } else { a.mul_add(length(link.a), along_d * length(link.d)) };
-            (own(2) * grown).store(kept, expansion + i);
+            (own(0) * grown).store(kept, expansion + i);
         }
         place(chain, i, [turn, alpha, a * stretch, fourth], &mut |column, value| value.store(kept, column));
     }
     let own = |slot: usize| Lanes::load(simd, below, layout.effects + last * EFFECT_SLOTS + slot);
     let mut grown = Lanes::splat(simd, 0.0);
     for (axis, value) in g.into_iter().enumerate() {
-        (value * own(3)).store(kept, joints + axis);
+        (value * own(1)).store(kept, joints + axis);
         grown = value.mul_add(Lanes::load(simd, below, layout.tip + axis), grown);
     }
-    if chain.expansion.is_some() {
+    if grows {
         let link = Lanes::load(simd, kept, expansion + last);
-        grown.mul_add(own(2), link).store(kept, expansion + last);
+        grown.mul_add(own(0), link).store(kept, expansion + last);
     }
-    if let Some(carried) = &chain.compliance {
+    if let (Some(carried), Some(bending)) = (&chain.carried, &chain.effects.compliance) {
         let weight = region::<S>(below, layout.compliance);
         for (i, link) in chain.links.iter().enumerate() {
             let turn =
                 if link.bare { Lanes::load(simd, kept, chain.turn_column()) } else { -Lanes::load(simd, kept, 4 * i) };
             (turn * compliance::moment(simd, weight, i)).store(kept, compliant + i);
-            compliance::weigh(weight, i, turn * Lanes::splat(simd, carried.rad_per_nm[i]));
+            compliance::weigh(weight, i, turn * Lanes::splat(simd, bending.rad_per_nm[i]));
         }
         compliance::derivatives(
             simd,

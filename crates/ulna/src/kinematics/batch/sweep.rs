@@ -134,7 +134,8 @@ impl WithSimd for TipsOp<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::{Arm, Body, Compliance, Effects, Expansion, Harmonics, samples};
+    use crate::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, samples};
+    use crate::kinematics::conditions::Conditions;
     use crate::kinematics::plain::{jacobian, tip_mm};
 
     /// Runs one of the kernels on an instruction set, if the machine has it.
@@ -178,6 +179,7 @@ mod tests {
         let rad_per_nm = (0..7).map(wave).collect();
         let effects = Effects {
             harmonics: Some(harmonics),
+            backlash: Some(Backlash { rad: (0..7).map(wave).collect() }),
             expansion: Some(Expansion { per_kelvin: (0..7).map(|i| 0.1 * wave(i)).collect() }),
             compliance: Some(Compliance { rad_per_nm, bodies, gravity: [0.1, 0.2, -1.0] }),
         };
@@ -189,7 +191,8 @@ mod tests {
     fn every_instruction_set_gives_the_formula() {
         let q_rad: Vec<f64> = (0..7 * 19).map(|i| (i as f64 * 0.618).fract() * 6.0 - 3.0).collect();
         let warmth_k: Vec<f64> = (0..19).map(|i| f64::from(i) - 4.0).collect();
-        let angles = Angles { q_rad: &q_rad, warmth_k: &warmth_k };
+        let approach: Vec<f64> = (0..7 * 19).map(|i| f64::from((i * 5 + i / 7) % 3 - 1)).collect();
+        let angles = Angles { q_rad: &q_rad, conditions: Conditions { warmth_k: &warmth_k, approach: &approach } };
         for (arm, &level) in arms().iter().flat_map(|arm| LEVELS.iter().map(move |level| (arm, level))) {
             let (chain, tip) = (Chain::new(arm), arm.probes()[0].tip_mm);
             let mut scratch = vec![0.0; scratch_len(&chain)];

@@ -2,6 +2,7 @@
 
 use super::kernels::{LengthOp, VarianceOp, distances};
 use super::run::Run;
+use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
@@ -29,45 +30,31 @@ pub(in crate::artefacts::kinds) struct Lengths {
 }
 
 impl Lengths {
-    /// Lengths between the poses of pairs of rows, one probe and one temperature for both.
-    pub fn between(
-        rows: &Rows,
-        encoders: usize,
-        pairs: &[[u32; 2]],
-        length_mm: impl Fn(usize) -> f64,
-        length: Option<Dimension>,
-    ) -> Lengths {
-        let probe = |k: usize| rows.probe[pairs[k][0] as usize];
-        let probes = (0..pairs.len()).map(probe).max().map_or(0, |p| p + 1);
-        let of_probe = |p: usize| {
-            let own: Vec<usize> = (0..pairs.len()).filter(|&k| probe(k) == p).collect();
-            let poses = |end: usize| {
-                let rows_of: Vec<usize> = own.iter().map(|&k| pairs[k][end] as usize).collect();
-                Poses::gathered(rows.poses, encoders, &rows_of)
-            };
-            let (from, to) = (poses(0), poses(1));
-            let lengths: Vec<f64> = own.iter().map(|&k| length_mm(k)).collect();
-            (!own.is_empty()).then(|| Run::new(p, own, [from, to], &lengths))
-        };
-        let runs = (0..probes).filter_map(of_probe).collect();
-        let unknown = length.as_ref().is_some_and(Dimension::is_free);
-        Lengths { runs, unknown, dimensions: length.into_iter().collect(), rows: pairs.len() }
-    }
-
     /// Rows of an arm of `encoders` joints, whose second poses and lengths must be there. `length`: what is not known of
     /// all lengths together.
     pub fn new(rows: &Rows, encoders: usize, length: Option<Dimension>) -> Lengths {
-        let (p_rad, length_mm) = (rows.p_rad.unwrap_or_default(), rows.measured_mm.unwrap_or_default());
-        let probes = rows.probe.iter().max().map_or(0, |&p| p + 1);
+        let second = rows.second.unwrap_or(Angles::cold(&[]));
+        Lengths::between(rows.probe, rows.measured_mm.unwrap_or_default(), length, |own| {
+            [rows.poses, second].map(|poses| Poses::gathered(poses, encoders, own))
+        })
+    }
+
+    /// Rows by the probe and the length of each; `ends` gives both poses of some of the rows.
+    pub fn between(
+        probe_of: &[usize],
+        length_mm: &[f64],
+        length: Option<Dimension>,
+        ends: impl Fn(&[usize]) -> [Poses; 2],
+    ) -> Lengths {
+        let probes = probe_of.iter().max().map_or(0, |&p| p + 1);
         let mut runs = Vec::new();
         for probe in 0..probes {
-            let own: Vec<usize> = (0..rows.probe.len()).filter(|&r| rows.probe[r] == probe).collect();
+            let own: Vec<usize> = (0..probe_of.len()).filter(|&r| probe_of[r] == probe).collect();
             if own.is_empty() {
                 continue;
             }
+            let [from, to] = ends(&own);
             let lengths: Vec<f64> = own.iter().map(|&r| length_mm[r]).collect();
-            let from = Poses::gathered(rows.poses, encoders, &own);
-            let to = Poses::gathered(Angles { q_rad: p_rad, ..rows.poses }, encoders, &own);
             runs.push(Run::new(probe, own, [from, to], &lengths));
         }
         let free = |length: &Dimension| length.is_free() && length_mm.iter().all(|&each| each == length.value);
@@ -75,7 +62,7 @@ impl Lengths {
             runs,
             unknown: length.as_ref().is_some_and(free),
             dimensions: length.into_iter().collect(),
-            rows: rows.probe.len(),
+            rows: probe_of.len(),
         }
     }
 }
@@ -229,9 +216,8 @@ impl Readings for Lengths {
         self.runs.iter().flat_map(run_poses).collect()
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        let ranges = self.runs.iter().filter_map(|run| run.from.warmth_range_k());
-        ranges.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
+    fn seen(&self) -> Seen {
+        self.runs.iter().flat_map(|run| [run.from.seen(), run.to.seen()]).reduce(Seen::and).unwrap_or_default()
     }
 
     fn taken_anew(

@@ -5,6 +5,7 @@
 //! and else to first order in the residuals. They are reported as the touches that they are.
 
 use super::apart::{Ends, apart};
+use crate::arm::Seen;
 use crate::artefacts::at_tips::{AT_ONCE, AtTips, whitener};
 use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::kinds::length::Lengths;
@@ -213,8 +214,8 @@ impl Readings for Bars {
         self.lengths.samples(most)
     }
 
-    fn warmth_range_k(&self) -> Option<(f64, f64)> {
-        self.lengths.warmth_range_k()
+    fn seen(&self) -> Seen {
+        self.lengths.seen()
     }
 
     fn taken_anew(

@@ -4,9 +4,8 @@ use super::touched::Points;
 use crate::artefacts::kinds::length::Lengths;
 use crate::artefacts::placed::Group;
 use crate::artefacts::readings::Readings;
-use crate::artefacts::stated::{Frame, Rows};
+use crate::artefacts::stated::Frame;
 use crate::artefacts::touches::Touches;
-use crate::kinematics::Angles;
 use std::ops::Range;
 
 /// See [`Readings::as_lengths`].
@@ -22,22 +21,15 @@ pub(super) fn pairs(points: &Points, group: &Group) -> Option<Box<dyn Readings>>
 
 /// Pairs of touches as lengths between them.
 fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)]) -> Lengths {
-    let (mut q_rad, mut p_rad, mut warmth_k) = (vec![], vec![], vec![]);
-    for &(from, to) in pairs {
-        let (first, second) = (touches.poses.sample(from, 0), touches.poses.sample(to, 0));
-        q_rad.extend(first.q_rad);
-        p_rad.extend(second.q_rad);
-        warmth_k.extend(first.warmth_k);
-    }
     let feature = |row: usize| points.features_mm[touches.feature[row]];
-    let rows = Rows {
-        poses: Angles { q_rad: &q_rad, warmth_k: &warmth_k },
-        probe: &pairs.iter().map(|&(from, _)| touches.probe[from]).collect::<Vec<_>>(),
-        p_rad: Some(&p_rad),
-        measured_mm: Some(&pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect::<Vec<_>>()),
-        ..Rows::default()
-    };
-    Lengths::new(&rows, touches.poses.encoders(), None)
+    let probe: Vec<usize> = pairs.iter().map(|&(from, _)| touches.probe[from]).collect();
+    let length_mm: Vec<f64> = pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect();
+    Lengths::between(&probe, &length_mm, None, |rows| {
+        let end = |row_of: fn(&(usize, usize)) -> usize| {
+            touches.poses.picked(&rows.iter().map(|&row| row_of(&pairs[row])).collect::<Vec<_>>())
+        };
+        [end(|pair| pair.0), end(|pair| pair.1)]
+    })
 }
 
 /// Touches of one standing in pairs at different features, with one probe each: every touch with three others at most,

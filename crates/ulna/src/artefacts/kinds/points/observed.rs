@@ -12,9 +12,7 @@ use crate::artefacts::readings::Readings;
 use crate::artefacts::stated::Frame;
 use crate::artefacts::touches::Touches;
 
-impl Observed for Points {
-    const COMPONENTS: usize = 3;
-
+impl Observed<3> for Points {
     type Scene<'a> = Seen<'a>;
 
     fn scene<'a>(&'a self, group: &'a Group, at: At<'a>) -> Seen<'a> {

@@ -38,7 +38,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-impl Scene for Seen<'_> {
+impl Scene<3> for Seen<'_> {
     type Directions<'b>
         = &'b Whitening
     where

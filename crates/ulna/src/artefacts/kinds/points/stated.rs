@@ -12,6 +12,7 @@ use crate::artefacts::standings::Standings;
 use crate::artefacts::stated::{Column, Frame, Rows};
 use crate::artefacts::touches::Touches;
 use crate::error::Result;
+use crate::kinematics::Poses;
 use nalgebra::Vector3;
 
 /// The kind; of two features the length may be a dimension, else what each feature is uncertain of.
@@ -51,11 +52,10 @@ fn by_standing(
     let free = frame == Frame::Free && (unknown.dimensions.is_empty() || unknown.is_length);
     let feature = |row: usize| rows.feature.map_or(0, |feature| feature[row]);
     let length_mm = |rows: &[usize]| (features_mm[feature(rows[0])] - features_mm[feature(rows[1])]).norm();
-    let warmth = |row: usize| rows.poses.pose(row, encoders).warmth_k;
     let known = |row: usize| unknown.of_its_own[feature(row)] == 0.0;
     let a_bar = |standing: &[usize]| match *standing {
         [a, b] => {
-            let alike = rows.probe[a] == rows.probe[b] && warmth(a) == warmth(b);
+            let alike = rows.probe[a] == rows.probe[b];
             free && alike && known(a) && known(b) && length_mm(standing) > 0.0
         }
         _ => false,
@@ -71,10 +71,17 @@ fn by_standing(
     });
     let mut parts = Vec::new();
     if !bars.each.is_empty() {
-        let pairs: Vec<[u32; 2]> = bars.order.chunks_exact(2).map(|pair| [pair[0] as u32, pair[1] as u32]).collect();
-        let length = |k: usize| length_mm(&bars.order[2 * k..2 * k + 2]);
-        let lengths = Lengths::between(rows, encoders, &pairs, length, unknown.dimensions.first().cloned());
-        let ends = pairs.iter().map(|pair| pair.map(|row| number[row as usize] as u32)).collect();
+        let probe: Vec<usize> = bars.order.iter().step_by(2).map(|&row| rows.probe[row]).collect();
+        let stated_mm = unknown.dimensions.first().map(|length| length.value);
+        let apart_mm = bars.order.chunks_exact(2).map(|pair| stated_mm.unwrap_or_else(|| length_mm(pair)));
+        let lengths =
+            Lengths::between(&probe, &apart_mm.collect::<Vec<_>>(), unknown.dimensions.first().cloned(), |own| {
+                [0, 1].map(|end| {
+                    let of_end: Vec<usize> = own.iter().map(|&k| bars.order[2 * k + end]).collect();
+                    Poses::gathered(rows.poses, encoders, &of_end)
+                })
+            });
+        let ends = bars.order.chunks_exact(2).map(|pair| [pair[0], pair[1]].map(|row| number[row] as u32)).collect();
         parts.push(Part { readings: Box::new(Bars::new(lengths, ends)), rows: of_bars, standings: bar_numbers });
     }
     if !others.each.is_empty() || parts.is_empty() {

@@ -1,0 +1,1 @@
+"""An arm: joints, probes, effects beyond geometry, its file, its frames."""

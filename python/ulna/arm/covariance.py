@@ -1,0 +1,40 @@
+"""What a calibration says about its parameters: their covariance, and the directions that nobody determined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ulna.ground.arrays import F64
+
+
+@dataclass(frozen=True)
+class ParameterCovariance:
+    """What a calibration says about its parameters."""
+
+    names: list[str]
+    """Parameters the matrix is of."""
+    matrix: F64
+    """(k, k), rad and mm."""
+    lost: list[dict[str, Any]]
+    """Directions that the data did not determine: ``{"combination": {name: weight}, "because", "remedy", …}``."""
+
+    def over(self, names: Sequence[str]) -> F64:
+        """(k, k) over these names, which contain its own; zero where it knows nothing: those parameters were held."""
+        whole = np.zeros((len(names), len(names)))
+        columns = [list(names).index(name) for name in self.names]
+        whole[np.ix_(columns, columns)] = self.matrix
+        return whole
+
+    def of(self, names: Sequence[str]) -> ParameterCovariance:
+        """That of some of the parameters alone."""
+        kept = [k for k, name in enumerate(self.names) if name in names]
+        lost = []
+        for direction in self.lost:
+            combination = {name: weight for name, weight in direction["combination"].items() if name in names}
+            if combination:
+                lost.append(direction | {"combination": combination})
+        return ParameterCovariance([self.names[k] for k in kept], self.matrix[np.ix_(kept, kept)], lost)

@@ -1,0 +1,1 @@
+"""What a joint does beyond its geometry: one file a cause."""

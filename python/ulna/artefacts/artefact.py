@@ -1,0 +1,35 @@
+"""An artefact in memory: what the arm touches. Units are mm, always."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class Artefact:
+    """A set of features with calibrated coordinates: what the arm touches."""
+
+    name: str
+    kind: str
+    """One of `ulna.artefacts.kinds.KINDS`."""
+    features: dict[str, tuple[float, float, float]]
+    """Coordinates in mm, in the artefact's own frame. bar: A at 0 and B at its length; seat: ``seat``; others: none."""
+    length_mm: float | None = None
+    """bar only: distance between its seats."""
+    u_mm: float = 0.0
+    """Standard uncertainty: of the length of a bar or of length rows, of the diameter of a sphere; per coordinate of
+    each feature of points, where `feature_u_mm` does not say it of each."""
+    frame: Literal["free", "arm"] = "free"
+    """"arm": the coordinates are in the arm's base frame; "free": each placement stands at an unknown pose."""
+    feature_u_mm: tuple[float, ...] | None = None
+    """points only: standard uncertainty of the coordinates of each feature, in the order of `features`."""
+    diameter_mm: float | None = None
+    """Of what is round."""
+    inside: bool = False
+    """Of what is round: a hollow, touched from within."""
+    fitted: bool = False
+    """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a diameter of
+    which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
+    own: object = None
+    """What only its kind knows of it, as a record of the kind's own file."""

@@ -1,0 +1,1 @@
+"""From a study to a calibrated arm, and what is judged of it."""

@@ -1,0 +1,198 @@
+"""Batch: many studies calibrated one after the other or at once, each by itself; what is done is not done again."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, Literal
+
+from ulna.calibration.calibrate import calibrate
+from ulna.calibration.provenance import provenance
+from ulna.calibration.result import FILES, Result
+from ulna.formats.output import refuse_inputs
+from ulna.formats.toml import read_json
+from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.study.study import Study
+from ulna.work.pieces import Threads, Workers
+
+Progress = Callable[[str, int, int], None]
+Status = Literal["converged", "not-converged", "refused"]
+
+FORMAT = "ulna-batch/1"
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """One of the studies."""
+
+    name: str
+    """The study's path in the folder, without its ending; the result's folder is called so."""
+    status: Status
+    message: str | None
+    """Of a study that was refused: what is wrong with it."""
+    readings: int
+    parameters: int
+    determined: int
+    rms_mm: float | None
+    """Of the readings' residuals, after."""
+    chi2_per_dof: float | None
+    outliers: int
+    done_before: bool
+    """The result was there already, made by this version from the same files in the same way."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """All of them, by name."""
+
+    studies: list[Calibrated]
+
+    @property
+    def converged(self) -> bool:
+        """Whether every study was calibrated and its fit ended well."""
+        return all(study.status == "converged" for study in self.studies)
+
+    def as_dict(self) -> dict[str, Any]:
+        """`batch.json`: JSON types only."""
+        return {"format": FORMAT, "studies": [dataclasses.asdict(study) for study in self.studies]}
+
+
+def studies_in(folder: Path, only: str = "*") -> dict[str, Path]:
+    """Name → study file of every study in a folder, at any depth, sorted by name.
+
+    only: a shell-style pattern over the names. Raises UlnaInputError where there is none.
+    """
+    if not folder.is_dir():
+        raise UlnaInputError(f"{folder}: is no folder; expected one with studies in it, at any depth.")
+    found = {}
+    for path in sorted(folder.rglob("*.toml")):
+        if path.is_file() and _is_study(path):
+            found[path.relative_to(folder).with_suffix("").as_posix()] = path
+    if not found:
+        raise UlnaInputError(
+            f'{folder}: has no study in it; expected files with format = "ulna-study/1", at any depth.'
+        )
+    chosen = {name: path for name, path in found.items() if fnmatchcase(name, only)}
+    if not chosen:
+        raise UlnaInputError(
+            f"{folder}: no study's name matches '{only}'; there are {len(found)}, such as {next(iter(found))}. Correct "
+            "the pattern."
+        )
+    return chosen
+
+
+def _is_study(path: Path) -> bool:
+    """By what its format says; whether it can be read is another question."""
+    return re.search(rb"^\s*format\s*=\s*[\"']ulna-study/", path.read_bytes(), re.MULTILINE) is not None
+
+
+def batch(
+    folder: str | Path,
+    out: str | Path,
+    *,
+    only: str = "*",
+    workers: Workers | None = None,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> Batch:
+    """Calibrate every study in a folder; each result goes into a folder of its own below `out`, whole or not at all.
+
+    only: a shell-style pattern over the studies' names. A study that cannot be calibrated stops no other: its message
+    is in the answer. What `out` has already, made by this version from the same files with the same options, is kept
+    and not done again; other results there are refused unless `force` is given. Raises UlnaInputError where nothing can
+    be done at all; KeyboardInterrupt.
+    """
+    folder, out = Path(folder), Path(out)
+    done: dict[str, Calibrated] = {}
+    loaded: dict[str, Study] = {}
+    named = studies_in(folder, only)
+    for name, path in named.items():
+        try:
+            study = _load(path)
+            refuse_inputs((out / name / file for file in FILES), (file.path for file in study.files))
+            before = _done_before(study, out / name, force)
+        except UlnaInputError as error:
+            done[name] = _refused(name, str(error))
+            continue
+        if before is None:
+            loaded[name] = study
+        else:
+            done[name] = _calibrated(name, before, done_before=True)
+    told = progress if progress is not None else lambda *_: None
+    told("studies", len(done), len(named))
+    names = list(loaded)
+    for number, answer in (workers or Threads()).each(_calibrate, [loaded[name] for name in names]):
+        name = names[number]
+        if isinstance(answer, str):
+            done[name] = _refused(name, answer)
+        else:
+            answer.save(out / name, force=force)
+            done[name] = _calibrated(name, answer, done_before=False)
+        told("studies", len(done), len(named))
+    found = Batch([done[name] for name in named])
+    text = json.dumps(found.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "batch.json").write_text(text + "\n", encoding="utf-8")
+    return found
+
+
+def _load(path: Path) -> Study:
+    with warnings.catch_warnings():
+        # its result has them; of many studies they would drown what matters
+        warnings.simplefilter("ignore", InputWarning)
+        return Study.load(path)
+
+
+def _calibrate(study: Study) -> Result | str:
+    """The result, or what is wrong with the study: a message is data here, so that it passes between processes."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        try:
+            return calibrate(study)
+        except UlnaInputError as error:
+            return str(error)
+
+
+def _done_before(study: Study, folder: Path, force: bool) -> Result | None:
+    """The result that is there already, if it is this study's. Raises UlnaInputError for another's without `force`."""
+    if not any((folder / name).exists() for name in FILES):
+        return None
+    if force:
+        return None
+    document, _ = read_json(folder / "result.json", "a result.json")
+    made = document.get("provenance", {})
+    asked = json.loads(json.dumps(provenance(study, datetime.now(UTC))))
+    same = all(made.get(key) == asked[key] for key in ("version", "options", "noise"))
+    same &= [file.get("sha256") for file in made.get("files", [])] == [file["sha256"] for file in asked["files"]]
+    if not same:
+        raise UlnaInputError(
+            f"{folder}: holds a result of other files, options or another version, and is not overwritten. Name "
+            "another folder, or give --force."
+        )
+    return Result.load(folder)
+
+
+def _refused(name: str, message: str) -> Calibrated:
+    return Calibrated(name, "refused", message, 0, 0, 0, None, None, 0, False)
+
+
+def _calibrated(name: str, result: Result, done_before: bool) -> Calibrated:
+    return Calibrated(
+        name=name,
+        status="converged" if result.fit.converged else "not-converged",
+        message=None,
+        readings=result.fit.readings,
+        parameters=result.identifiability.parameters,
+        determined=result.identifiability.determined,
+        rms_mm=result.fit.rms_mm,
+        chi2_per_dof=result.fit.chi2_per_dof,
+        outliers=len(result.outliers),
+        done_before=done_before,
+    )

@@ -1,0 +1,39 @@
+"""Calibrate: find the arm that explains a study's readings, with what is known of each parameter and what is not."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any
+
+from ulna.calibration.estimators import search_box
+from ulna.calibration.extras import judge_extras
+from ulna.calibration.fitted import FittedStudy
+from ulna.calibration.result import Result
+from ulna.calibration.running import run_assembled
+from ulna.study.assembly import assemble
+from ulna.study.options import with_options
+from ulna.study.study import Study
+
+Progress = Callable[[str, int, int], None]
+
+
+def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) -> Result:
+    """Fit the study's arm to its readings.
+
+    `overrides` replace fields of `study.fit` (``hold=["joint.6.*"]``, ``start="search"``, ``seed=1`` …).
+    `progress` is called about ten times a second with (stage, done, total).
+
+    The result says in `fit.converged` whether the fit ended well: that is no error. Its tables and figures are made of
+    the study's arrays when they are first read: leave those as they are until then. Raises UlnaInputError for what
+    cannot be asked (fewer observations than unknowns, a pattern that matches nothing); KeyboardInterrupt.
+    """
+    study = with_options(study, **overrides)
+    began = time.perf_counter()
+    assembled = assemble(study)
+    searched = search_box(study, assembled, progress) if study.fit.method != "lm" else None
+    fitted = run_assembled(study, assembled, progress, None if searched is None else searched.parameters)
+    extras = judge_extras(study, progress) if study.fit.extras and study.fit.judge_extras else []
+    ended, seconds = datetime.now(UTC), time.perf_counter() - began
+    return Result.on_demand(FittedStudy(study, assembled, fitted, searched, extras, ended, seconds).parts())

@@ -1,0 +1,80 @@
+"""Identify: what readings can and cannot determine, before or after a fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ulna.ground.errors import UlnaInputError
+from ulna.study.assembly import assemble
+from ulna.study.study import Study
+
+if TYPE_CHECKING:
+    import ulna._core as _core
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Which free parameters, and which combinations of them, readings determine (MODEL: rank of the Jacobian)."""
+
+    parameters: int
+    """Number of free parameters."""
+    determined: int
+    """Number of their combinations that the readings determine: the rank."""
+    names: list[str]
+    """The free parameters."""
+    singular_values: list[float]
+    """Of the Jacobian with columns scaled to unit norm and placements eliminated; descending."""
+    condition: float
+    """Smallest kept singular value over the largest."""
+    not_determined: list[str]
+    """Every free parameter that takes part in a lost direction."""
+    lost: list[dict[str, Any]] = field(default_factory=list)
+    """``{"combination": {name: weight}, "cause", "because", "remedy", "frame"}``; weights in rad and mm, the largest
+    effect has weight 1; ``frame`` true: a motion of the base frame, on which no length or shape depends."""
+    weak: list[dict[str, Any]] = field(default_factory=list)
+    """Determined, but worse than an arm is known from its drawing; nothing that has a prior:
+    ``{"combination", "u", "unit", "because", "remedy"}``."""
+    from_prior: list[str] = field(default_factory=list)
+    """Parameters of which the readings say next to nothing: what is known of them is their prior."""
+
+    @classmethod
+    def from_core(cls, found: _core.Identifiability) -> Identification:
+        """Copy out of the core."""
+        return cls(
+            parameters=found.parameters,
+            determined=found.determined,
+            names=list(found.names),
+            singular_values=[float(value) for value in found.singular_values],
+            condition=float(found.condition),
+            not_determined=list(found.not_determined),
+            lost=[dict(direction) for direction in found.lost],
+            # without degrees of freedom nobody knows how well: nothing can be called weak
+            weak=[dict(direction) for direction in found.weak if math.isfinite(direction["u"])],
+            from_prior=list(found.from_prior),
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON types only."""
+        return asdict(self)
+
+
+def identify(study: Study) -> Identification:
+    """What the study's readings can determine at its arm's start values, without fitting.
+
+    The study's `fit.free` and `fit.hold` say what is asked about. Raises UlnaInputError.
+    """
+    import ulna._core as _core
+
+    assembled = assemble(study)
+    if assembled.hold.all():
+        raise UlnaInputError(
+            f"{study.label}: keys 'fit.free' and 'fit.hold' hold every parameter; expected at least one to ask about."
+        )
+    known = study.fit.known_length_mm, study.fit.known_angle_rad
+    try:
+        found = _core.identify(assembled.problem, assembled.hold, *known)
+    except _core.UlnaError as error:
+        raise UlnaInputError(f"{study.label}: {error}") from None
+    return Identification.from_core(found)

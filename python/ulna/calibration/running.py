@@ -1,0 +1,72 @@
+"""Running the core's fit on a study; its complaints name the study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.ground.errors import UlnaInputError
+from ulna.study.assembly import Assembled, assemble
+from ulna.study.study import Study
+
+if TYPE_CHECKING:
+    import ulna._core as _core
+
+Progress = Callable[[str, int, int], None]
+
+
+def run_fit(
+    study: Study, hold: Callable[[list[str]], NDArray[np.bool_]] | None = None, progress: Progress | None = None
+) -> _core.Fitted:
+    """The core's fit with the study's options. hold: what is held, by names, in place of what the study says.
+
+    Raises UlnaInputError.
+    """
+    return run_assembled(study, assemble(study, hold), progress)
+
+
+def run_assembled(
+    study: Study,
+    assembled: Assembled,
+    progress: Progress | None = None,
+    from_parameters: NDArray[np.float64] | None = None,
+) -> _core.Fitted:
+    """The same, of a study that is in the core already; from other parameters than the arm file's where given."""
+    import ulna._core as _core
+
+    options = study.fit
+    unknown = study.arm.unknown_signs
+    if unknown.any():
+        _check_signs(study, assembled, unknown)
+    try:
+        return _core.fit(
+            assembled.problem,
+            assembled.hold,
+            start=options.start,
+            max_iterations=options.max_iterations,
+            seed=options.seed,
+            known_length_mm=options.known_length_mm,
+            known_angle_rad=options.known_angle_rad,
+            progress=progress,
+            unknown_signs=unknown if unknown.any() else None,
+            from_parameters=from_parameters,
+        )
+    except _core.UlnaError as error:
+        raise UlnaInputError(f"{study.label}: {error}") from None
+
+
+def _check_signs(study: Study, assembled: Assembled, unknown: NDArray[np.bool_]) -> None:
+    """A sign is found together with the geometry around it, so that must be free. Raises UlnaInputError."""
+    joint = int(np.flatnonzero(unknown)[0]) + 1
+    names = [name for name in assembled.names if name.startswith((f"joint.{joint}.", "joint.1.theta0"))]
+    held = [name for name in names if assembled.hold[assembled.names.index(name)]]
+    of_joint = [name for name in held if name.startswith(f"joint.{joint}.") and name.endswith(("theta0", "alpha"))]
+    if of_joint or assembled.hold.all():
+        raise UlnaInputError(
+            f"{study.label}: arm '{study.arm.name}': joint.{joint}.sign is 0 (not known), but "
+            f"{', '.join(of_joint) or 'every parameter'} is held; expected its sign, or its theta0 and alpha free: "
+            "signs are found with them. State the sign, or calibrate."
+        )

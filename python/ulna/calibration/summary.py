@@ -1,0 +1,93 @@
+"""What a calibration says of each parameter, of how the fit ended, and of a group that was left out.
+
+These are entries of files as they stand (`ulna.calibration.result_file`): a field with a default may be absent in files
+of earlier versions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import ulna._core as _core
+from ulna.calibration.placements import Figures
+from ulna.study.data import Loss, Method
+
+Unit = Literal["rad", "mm", "1/K", "rad/(N m)"]
+Status = Literal["fitted", "held", "not-determined"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of the arm before and after."""
+
+    name: str
+    """As `joint.3.theta0`, `probe.bent.x`, `joint.3.c1` or `artefact.ball.diameter`."""
+    unit: Unit
+    """Of start, value and u."""
+    start: float
+    value: float
+    u: float | None
+    """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
+    status: Status
+    prior: dict[str, float] | None = None
+    """What was known of it before: value and u, where the fit used it."""
+
+
+@dataclass(frozen=True)
+class FitSummary:
+    """How the fit ended."""
+
+    termination: str
+    """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
+    "max-iterations", "poor-minimum"."""
+    converged: bool
+    iterations: int
+    evaluations: int
+    cost_start: float
+    """Sum of squares of the whitened residuals at the start; mm² where no noise is stated."""
+    cost: float
+    rms_start_mm: float
+    """Root of the mean of the squared norms of the readings' residuals, unweighted."""
+    rms_mm: float
+    readings: int
+    observations: int
+    """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
+    placement_unknowns: int
+    degrees_of_freedom: int
+    chi2_per_dof: float | None = None
+    """1 where the stated noise is right; None without stated noise."""
+    searched_starts: int = 0
+    search_reason: str = ""
+    folded: list[str] = field(default_factory=list)
+    undecided_signs: list[list[int]] = field(default_factory=list)
+    """Sets of joints that may all count the other way: readings and the arm file do not tell."""
+    method: Method = "lm"
+    """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
+    box_evaluations: int = 0
+    """How often that search evaluated the sum of squares."""
+    loss: Loss = "none"
+    scatter: dict[str, float] = field(default_factory=dict)
+    """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
+
+    @classmethod
+    def from_core(cls, fitted: _core.Fitted, **more: Any) -> FitSummary:
+        """Copy out of the core; `more` are the fields that it does not know."""
+        values = {name: getattr(fitted, name) for name in cls.__dataclass_fields__ if name not in more}
+        return cls(**(values | more | {"folded": list(fitted.folded)}))
+
+
+@dataclass(frozen=True)
+class GroupFigures:
+    """One group left out."""
+
+    group: str
+    readings: int
+    """Rows left out."""
+    before: Figures
+    after: Figures
+    converged: bool
+    """Whether the fit to the other readings ended well."""
+    termination: str
+    lost: list[dict[str, Any]] = field(default_factory=list)
+    """What the other readings could not determine, as `Identification.lost`."""

@@ -1,0 +1,21 @@
+"""What `ulna evaluate` prints."""
+
+from __future__ import annotations
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from ulna.calibration.evaluate import Evaluation
+from ulna.cli.printed.figures import overall, per_placement
+
+
+def evaluation_report(found: Evaluation) -> list[RenderableType]:
+    """Per placement, then over all."""
+    rows = {"fit": " that were fitted", "check": " kept to check the fit"}.get(found.provenance.get("rows", ""), "")
+    return [
+        Text(f"{found.arm.name}: {found.readings} readings{rows}, the arm unchanged."),
+        "",
+        *per_placement(found.artefacts, "-o DIR writes all of them to evaluation.json."),
+        "",
+        overall("Over all readings", found.overall),
+    ]

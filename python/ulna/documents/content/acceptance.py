@@ -1,0 +1,126 @@
+"""The acceptance test of a report: its length errors with limits, and what is said on the whole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.documents.languages.said import Said
+from ulna.documents.sources.source import Taken
+from ulna.verification.kinds.registry import LENGTHS
+from ulna.verification.result_file import TestedTable, VerificationFile
+
+F64 = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TestedLengths:
+    """Length errors of an acceptance test over their lengths."""
+
+    __test__ = False  # no test of pytest's
+
+    state: str
+    """"as-found" or "as-left"."""
+    test: str
+    figure: str
+    length_mm: F64
+    """(N,) calibrated."""
+    error_mm: F64
+    limit_mm: F64
+    """(N,) MPE; NaN where none is stated."""
+    guard_mm: F64
+    """(N,) NaN where it is not known."""
+    verdict: list[str | None]
+    """"pass", "fail", "undecided" or None."""
+    a_mm: float | None
+    """MPE = a + L / b; None where none is stated."""
+    b: float | None
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What `ulna verify` found."""
+
+    name: str
+    """Of the file."""
+    sha256: str
+    file: VerificationFile
+    remarks: list[Said]
+    """Where it is not of this result's arm."""
+    lengths: list[TestedLengths]
+
+
+def verification(taken: Taken[VerificationFile]) -> Verification:
+    """What `ulna verify` found, with its length errors as arrays."""
+    lengths = [
+        _lengths(state.state, test)
+        for state in taken.value.states
+        for test in state.tests
+        if test.kind in LENGTHS and test.figures
+    ]
+    return Verification(taken.file.name, taken.file.sha256, taken.value, taken.remarks, lengths)
+
+
+def _lengths(state: str, test: TestedTable) -> TestedLengths:
+    """Of a test's first figure, whose single values are length errors."""
+    figure = test.figures[0]
+    values = [value for value in figure.individual if value.calibrated is not None]
+    terms = figure.limit_terms
+
+    def of(name: str) -> list[float]:
+        return [np.nan if getattr(value, name) is None else getattr(value, name) for value in values]
+
+    return TestedLengths(
+        state=state,
+        test=test.name,
+        figure=figure.name,
+        length_mm=np.array(of("calibrated")),
+        error_mm=np.array([value.value for value in values]),
+        limit_mm=np.array(of("limit")),
+        guard_mm=np.array(of("guard")),
+        verdict=[value.verdict for value in values],
+        a_mm=None if terms is None else terms.a,
+        b=None if terms is None else terms.b,
+    )
+
+
+def limit_lines(found: TestedLengths) -> tuple[F64, F64, F64] | None:
+    """Lengths, the MPE there and the half width g of the guard band about it, each (M,) mm: what limits look like over
+    the length, going on a little beyond the shortest and the longest. None where no MPE is stated."""
+    if found.a_mm is None or not len(found.length_mm):
+        return None
+    low, high = float(found.length_mm.min()), float(found.length_mm.max())
+    margin = 0.04 * (high - low) or 0.05 * high
+    at, first = np.unique(found.length_mm.round(6), return_index=True)
+    x = np.concatenate([[max(low - margin, 0.0)], at, [high + margin]])
+    guard = np.nan_to_num(found.guard_mm[first])
+    guard = np.concatenate([guard[:1], guard, guard[-1:]])
+    limit = np.full(len(x), found.a_mm) if found.b is None else found.a_mm + x / found.b
+    return x, limit, guard
+
+
+@dataclass(frozen=True)
+class Whole:
+    """What is said of one state of the arm on the whole, and of what nothing is said."""
+
+    state: str
+    verdict: str | None
+    unmeasured: int
+    """Tests of the profile."""
+    silent: int
+    """Figures without a verdict."""
+
+
+def wholes(found: VerificationFile) -> list[Whole]:
+    """Of each state: as found and as left are judged by themselves."""
+    return [
+        Whole(
+            state.state,
+            state.verdict,
+            len(state.departures),
+            sum(figure.verdict is None for test in state.tests for figure in test.figures),
+        )
+        for state in found.states
+    ]

@@ -1,0 +1,71 @@
+"""Readings that the fit has not seen: rows kept to check, groups left out, an evaluation; or what would be needed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ulna.arm.arm import Arm
+from ulna.calibration.evaluate import study_of_arm
+from ulna.calibration.figures import overall_figures
+from ulna.calibration.result import Result
+from ulna.documents.content.quality import QualityRow, quality_rows
+from ulna.documents.languages.said import Said
+from ulna.documents.sources.source import Taken
+from ulna.study.file import rows_to_judge
+from ulna.study.study import Study
+
+#: what is said of held-out readings that weakens what they show
+CAUTIONS = ("held-out.none", "held-out.same-readings", "held-out.other-study", "held-out.unknown-arm")
+
+Rows = tuple[list[QualityRow], list[Said]]
+
+
+def held_out(
+    result: Result, study: Study | None, cross_validation: Taken[Any] | None, evaluation: Taken[Any] | None
+) -> Rows:
+    """Rows on readings that the fit has not seen, and what they are."""
+    rows: list[QualityRow] = []
+    said: list[Said] = []
+    parts: list[Rows] = []
+    if study is not None and study.path is not None and study.rows == "fit":
+        parts += _checked(result, study, study.path)
+    if cross_validation is not None:
+        parts.append(_left_out(cross_validation))
+    if evaluation is not None:
+        parts.append(_evaluated(evaluation))
+    for own_rows, own_said in parts:
+        rows += own_rows
+        said += own_said
+    return rows, said if rows else [*said, Said("held-out.none")]
+
+
+def _checked(result: Result, study: Study, path: Path) -> list[Rows]:
+    """Rows that the study keeps to check; nothing where it keeps none."""
+    if rows_to_judge(path) != "check":
+        return []
+    check = Study.load(path, "check")
+    after = overall_figures(result.arm, study_of_arm(check, result.arm))
+    before = overall_figures(start_of(result), study_of_arm(check, result.arm))
+    count = sum(len(group) for group in check.readings)
+    return [(quality_rows("check", before, after), [Said("held-out.check", {"readings": count})])]
+
+
+def _left_out(taken: Taken[Any]) -> Rows:
+    document = taken.value
+    values = {"by": str(document.get("by", "")), "groups": len(document["groups"]), "file": taken.file.name}
+    rows = quality_rows("left-out", document["before"], document["after"])
+    return rows, [Said("held-out.left-out", values), *taken.remarks]
+
+
+def _evaluated(taken: Taken[Any]) -> Rows:
+    document = taken.value
+    readings = sum(int(entry.get("readings", 0)) for entry in document["artefacts"])
+    said = Said("held-out.evaluated", {"readings": readings, "file": taken.file.name})
+    return quality_rows("evaluated", None, document["overall"]), [said, *taken.remarks]
+
+
+def start_of(result: Result) -> Arm:
+    """The arm that the fit started from, with the signs that it found."""
+    start = {row.name: row.start for row in result.parameters}
+    return result.arm.with_parameters([start[name] for name in result.arm.parameter_names])

@@ -1,0 +1,74 @@
+"""What holds for the whole certificate: draft, traceability, uncertainty, rounding, and what was not determined."""
+
+from __future__ import annotations
+
+import math
+
+from ulna.arm.directions import combination
+from ulna.calibration.result import Result
+from ulna.documents.certified.parameters import StatedParameters
+from ulna.documents.dcc.sheet import Element, Sheet, Texts
+from ulna.documents.laboratory.file import Laboratory
+
+
+def statement(sheet: Sheet, parent: Element, name: Texts, text: Texts, ref: str | None = None) -> Element:
+    """One statement with its declaration."""
+    element = sheet.dcc(parent, "statement", ref=ref)
+    sheet.text(element, "name", name)
+    sheet.text(element, "declaration", text)
+    return element
+
+
+def statements(sheet: Sheet, parent: Element, laboratory: Laboratory, result: Result, stated: StatedParameters) -> None:
+    """All but those on conformity."""
+    statement(sheet, parent, sheet.own("dcc.draft-name"), sheet.own("dcc.draft"))
+    _laboratory(sheet, parent, laboratory)
+    if stated.fitted:
+        statement(sheet, parent, sheet.own("section.uncertainty"), _uncertainty(sheet, stated))
+    statement(sheet, parent, sheet.own("dcc.rounding-name"), sheet.own("dcc.rounding"))
+    _not_determined(sheet, parent, result, stated)
+    for remark in laboratory.file.remarks:
+        statement(sheet, parent, sheet.own("laboratory.remark"), sheet.theirs(remark))
+
+
+def _laboratory(sheet: Sheet, parent: Element, laboratory: Laboratory) -> None:
+    file = laboratory.file
+    traceability = file.traceability
+    said = sheet.own("dcc.traceability-missing") if traceability is None else sheet.theirs(traceability.statement)
+    statement(sheet, parent, sheet.own("section.traceability"), said, "basic_metrologicallyTraceableToSI")
+    accredited = file.laboratory.accreditation
+    if accredited is not None:
+        key = "dcc.accreditation" if accredited.standard is None else "dcc.accreditation-standard"
+        text = sheet.own(key, body=accredited.body, number=accredited.number, standard=accredited.standard)
+        statement(sheet, parent, sheet.own("laboratory.accreditation"), text)
+
+
+def _uncertainty(sheet: Sheet, stated: StatedParameters) -> Texts:
+    known = math.isinf(stated.degrees_of_freedom)
+    freedom = f"{stated.degrees_of_freedom:g}"
+    return sheet.own(
+        "dcc.uncertainty",
+        distribution=sheet.own("dcc.normal") if known else sheet.own("dcc.student", freedom=freedom),
+        noise=sheet.own("dcc.noise-stated" if known else "dcc.noise-estimated"),
+        p=f"{100 * stated.p:g} %",
+    )
+
+
+def _not_determined(sheet: Sheet, parent: Element, result: Result, stated: StatedParameters) -> None:
+    for lost in result.identifiability.lost:
+        text = sheet.own(
+            "dcc.lost",
+            combination=combination(lost["combination"]),
+            because=lost["because"],
+            remedy=lost["remedy"],
+        )
+        statement(sheet, parent, sheet.own("dcc.lost-name"), text)
+    if stated.unsure:
+        names = ", ".join(row.name for row in stated.unsure)
+        statement(sheet, parent, sheet.own("section.uncertainty"), sheet.own("dcc.unsure", names=names))
+    if stated.held:
+        names = ", ".join(row.name for row in stated.held)
+        statement(sheet, parent, sheet.own("dcc.held-name"), sheet.own("dcc.held", names=names))
+    if result.identifiability.from_prior:
+        names = ", ".join(result.identifiability.from_prior)
+        statement(sheet, parent, sheet.own("dcc.prior-name"), sheet.own("dcc.prior", names=names))

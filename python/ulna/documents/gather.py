@@ -1,0 +1,110 @@
+"""Gathering what a report says: from a result, the study it was made from, and what else there is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+from ulna.calibration.evaluate import study_of_arm
+from ulna.calibration.result import Result
+from ulna.documents.content.acceptance import verification
+from ulna.documents.content.artefacts import artefact_rows
+from ulna.documents.content.clouds import Cloud, Quiver, clouds
+from ulna.documents.content.content import Content
+from ulna.documents.content.distribution import samples
+from ulna.documents.content.environment import environment
+from ulna.documents.content.held_out import held_out
+from ulna.documents.content.missing import missing_parts
+from ulna.documents.content.parameters import observability, parameters
+from ulna.documents.content.provenance import provenance
+from ulna.documents.content.quality import quality_rows, residual_row
+from ulna.documents.content.readings import length_errors, reading_rows
+from ulna.documents.sources.cross_validation import CROSS_VALIDATION
+from ulna.documents.sources.evaluation import EVALUATION
+from ulna.documents.sources.laboratory import LABORATORY
+from ulna.documents.sources.result import read_calibration
+from ulna.documents.sources.source import Calibration, Source, Taken, take
+from ulna.documents.sources.study import find_study
+from ulna.documents.sources.verification import VERIFICATION
+from ulna.study.study import Study
+
+T = TypeVar("T")
+Progress = Callable[[str, int, int], None]
+
+_STEPS = 4
+"""The result; the study; what it says; what is made of it."""
+
+
+def gather(
+    result: Path,
+    study: Path | None = None,
+    cross_validation: Path | None = None,
+    evaluation: Path | None = None,
+    laboratory: Path | None = None,
+    verified: Path | None = None,
+    progress: Progress | None = None,
+) -> Content:
+    """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
+
+    result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
+    longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
+    calibrated for whom, with what. verified: what `ulna verify` wrote.
+    progress is called with (stage, done, total).
+    """
+
+    def at(done: int) -> None:
+        if progress is not None:
+            progress("gathering", done, _STEPS)
+
+    at(0)
+    calibration = read_calibration(result)
+    found = calibration.result
+    named = _taken(LABORATORY, laboratory, calibration)
+    at(1)
+    tested = _taken(VERIFICATION, verified, calibration)
+    source = find_study(calibration, study)
+    at(2)
+    left_out = _taken(CROSS_VALIDATION, cross_validation, calibration)
+    judged = _taken(EVALUATION, evaluation, calibration)
+    rows, said = held_out(found, source.study, left_out, judged)
+    over, quiver = _clouds(found, source.study)
+    at(3)
+    content = Content(
+        arm=found.arm.name,
+        joints=found.arm.n,
+        probes=list(found.arm.probes),
+        fit=found.fit,
+        quality=[*quality_rows("fitted", found.before, found.after), *filter(None, [residual_row(found)]), *rows],
+        held_out=said,
+        readings=reading_rows(found.residuals),
+        samples=samples(found.residuals, found.artefacts),
+        clouds=over,
+        quiver=quiver,
+        parameters=parameters(found),
+        identification=found.identifiability,
+        observability=observability(found),
+        lengths=None if source.study is None else length_errors(source.study, found),
+        placements=found.artefacts,
+        artefacts=artefact_rows(found, source.study),
+        environment=environment(found.provenance, source.study),
+        outliers=found.outliers,
+        extras=found.extras,
+        verification=None if tested is None else verification(tested),
+        laboratory=None if named is None else named.value,
+        missing={},
+        provenance=provenance(
+            calibration, source.files, [each.file for each in (named, tested, left_out, judged) if each is not None]
+        ),
+    )
+    return replace(content, missing=missing_parts(content, source.missing, bool(rows)))
+
+
+def _clouds(result: Result, study: Study | None) -> tuple[list[Cloud], Quiver | None]:
+    """Nothing where the study is not known: encoder angles stand there."""
+    return ([], None) if study is None else clouds(study_of_arm(study, result.arm), result.arm, result.residuals)
+
+
+def _taken(source: Source[T], path: Path | None, calibration: Calibration) -> Taken[T] | None:
+    return None if path is None else take(source, path, calibration)

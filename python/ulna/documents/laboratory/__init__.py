@@ -1,0 +1,1 @@
+"""Who calibrates and what for: laboratory files."""

@@ -1,0 +1,122 @@
+"""What stands on paper, in which order, and under which headings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ulna.documents.content.content import Content
+from ulna.documents.languages.text import Text
+from ulna.documents.languages.words import Words
+from ulna.documents.sections import artefacts as touched
+from ulna.documents.sections import (
+    blocks,
+    conditions,
+    decision,
+    determined,
+    extras,
+    laboratory,
+    lacking,
+    parameters,
+    plots,
+    provenance,
+    quality,
+    summary,
+    traceability,
+    uncertainty,
+)
+from ulna.documents.sections import outliers as far_off
+from ulna.documents.sections import verification as acceptance
+
+MOST_OUTLIERS = 40
+"""In print; the result has all of them."""
+#: facts that the letterhead, the head of the first page, the signatures or a part of its own has
+ABOUT = ("identifier", "laboratory", "accreditation", "person", "remark")
+#: of the provenance: the path is the author's own, and the result has the options
+LEFT_OUT = ("study", "fit")
+
+
+@dataclass(frozen=True)
+class Part:
+    """Blocks under a heading; without one they go on with what is before."""
+
+    heading: Text
+    blocks: Sequence[blocks.Block]
+
+
+def parts(content: Content, words: Words) -> list[Part]:
+    """All that there is; a part without a block is left out."""
+    found = [*_first_page(content, words), *_results(content, words), *_plots(content, words), *_end(content, words)]
+    return [part for part in found if part.blocks]
+
+
+def _first_page(content: Content, words: Words) -> list[Part]:
+    """All that stands before the results."""
+    found = content.laboratory
+    warnings: list[blocks.Block] = [] if content.fit.converged else [summary.ending(content, words)]
+    if found is None:
+        warnings.append(blocks.Paragraph(words("paper.no-laboratory"), "bad"))
+    facts = laboratory.facts(content, words)
+    remarks = [line for row in facts.rows if row.key == "remark" for line in row.lines]
+    shown = facts if found is None else facts.without(ABOUT)
+    return [
+        Part((), [*warnings, shown]),
+        Part(words("section.traceability"), traceability.traceability(content, words)),
+        Part(words("paper.conditions"), [] if found is None else conditions.room(found, words)),
+        Part(words("laboratory.remark"), blocks.paragraphs(remarks)),
+    ]
+
+
+def _results(content: Content, words: Words) -> list[Part]:
+    found = content.verification
+    return [
+        _part("summary", words, [summary.ending(content, words), *summary.counts(content, words)]),
+        _part("parameters", words, parameters.parameters(content, words)),
+        _part("determined", words, determined.determined(content, words)),
+        _part("extras", words, extras.extras(content, words)),
+        _part("quality", words, [*quality.quality(content, words), *plots.before_after(content, words)]),
+        _part(
+            "verification",
+            words,
+            lacking.lacking(content, words, "verification")
+            if found is None
+            else [
+                *acceptance.verification(found, words),
+                *acceptance.formulas(found, words),
+                *plots.tested_lengths(found, words),
+            ],
+        ),
+        _part("decision", words, decision.decision(content, words)),
+        _part("uncertainty", words, uncertainty.uncertainty_statement(content, words)),
+    ]
+
+
+def _plots(content: Content, words: Words) -> list[Part]:
+    over_joints = plots.clouds(content, words, "joint")
+    said = (*words("joints.note"), " ", *words("paper.cloud-legend"))
+    joints: list[blocks.Block] = []
+    if over_joints:
+        joints = [blocks.Paragraph(said, "note"), blocks.Drawings(over_joints, narrow=True)]
+    return [
+        _part("distribution", words, plots.distributions(content, words) if content.samples else []),
+        _part("joints", words, [*joints, *lacking.lacking(content, words, "study", "joint")]),
+        Part(words("paper.moved"), plots.ratios(content, words)),
+        _part("lengths", words, plots.lengths(content, words)),
+    ]
+
+
+def _end(content: Content, words: Words) -> list[Part]:
+    made = content.provenance
+    sources: list[blocks.Block] = [provenance.facts(content, words).without(LEFT_OUT), provenance.files(content, words)]
+    draft = words("paper.draft-note", program=made.program, version=made.version)
+    signature: list[blocks.Block] = [blocks.Paragraph(draft), blocks.Paragraph(words("decimal-note"), "note")]
+    return [
+        _part("artefacts", words, touched.artefacts(content, words)),
+        _part("outliers", words, far_off.outliers(content, words, MOST_OUTLIERS)),
+        _part("provenance", words, sources),
+        _part("signature", words, signature),
+    ]
+
+
+def _part(key: str, words: Words, found: Sequence[blocks.Block]) -> Part:
+    return Part(words(f"section.{key}"), found)

@@ -1,0 +1,42 @@
+"""The decision rule and what it says on the whole, of each state, or that nothing is said."""
+
+from __future__ import annotations
+
+from ulna.documents.content.acceptance import Whole, wholes
+from ulna.documents.content.content import Content
+from ulna.documents.languages.text import Text
+from ulna.documents.languages.words import Words
+from ulna.documents.sections.blocks import Block, Paragraph, Tone, own
+
+#: verdict → how it is shown
+TONES: dict[str | None, Tone] = {"pass": "good", "fail": "bad", "undecided": "missing", None: "missing"}
+
+
+def decision(content: Content, words: Words) -> list[Block]:
+    """Rule, then each state as found and as left by itself."""
+    found = content.verification
+    if found is None:
+        return [Paragraph(words("decision.none"))]
+    page: list[Block] = [Paragraph(rule(found.file.decision.rule, found.file.decision.k, words))]
+    for whole in wholes(found.file):
+        page += _whole(whole, words)
+    return page
+
+
+def rule(name: str, k: float, words: Words) -> Text:
+    """In the manner of ISO 14253-1; name: of the guard band, "1.65u", "U" or "simple"."""
+    return words("rule", guard=words(f"guard.{name}", k=own(f"{k:g}")))
+
+
+def verdict(word: str | None, words: Words) -> Text:
+    """pass, fail, undecided, or that there is none."""
+    return words(f"conformity.{word or 'none'}")
+
+
+def _whole(whole: Whole, words: Words) -> list[Block]:
+    said = words("decision.whole", verdict=verdict(whole.verdict, words), state=words(f"state.{whole.state}"))
+    page: list[Block] = [Paragraph(said, TONES[whole.verdict])]
+    if whole.unmeasured or whole.silent:
+        partial = words("decision.partial", unmeasured=whole.unmeasured, silent=whole.silent)
+        page.append(Paragraph(partial, "missing"))
+    return page

@@ -1,0 +1,47 @@
+"""How U came about: coverage, the sources that it has and those that it has not."""
+
+from __future__ import annotations
+
+import math
+
+from ulna.documents.content.content import Content
+from ulna.documents.languages.text import Text, joined, named
+from ulna.documents.languages.words import Words
+from ulna.documents.sections.blocks import Block, Heading, Listed, Paragraph, own
+from ulna.documents.sections.conditions import noise
+from ulna.documents.sections.parameters import u_comes_from
+from ulna.ground.digits import uncertainty
+
+#: what no fit can see
+NEVER = ("thermal", "model", "time", "use")
+
+
+def uncertainty_statement(content: Content, words: Words) -> list[Block]:
+    """In the manner of the GUM."""
+    known = content.parameters
+    if math.isnan(known.k):
+        return [Paragraph(words("parameters.no-u"), "missing")]
+    manner = words("uncertainty.manner", k=own(f"{known.k:.2f}"), p=own(f"{100 * known.p:g}"))
+    return [
+        Paragraph(joined([manner, u_comes_from(content, words)], " ")),
+        Heading(words("uncertainty.included")),
+        Listed(_within(content, words)),
+        Heading(words("uncertainty.excluded")),
+        Listed(_outside(content, words)),
+    ]
+
+
+def _within(content: Content, words: Words) -> list[Text]:
+    stated = math.isinf(content.parameters.degrees_of_freedom)
+    found = [words("included.readings" if stated else "included.scatter"), words("included.placements")]
+    found += noise(content.environment, words)
+    with_u = [(*named(row.name), *own(f" (u = {uncertainty(row.u_mm)} mm)")) for row in content.artefacts if row.u_mm]
+    if with_u:
+        found.append(joined([words("included.artefacts"), joined(with_u, ", ")], " "))
+    return found
+
+
+def _outside(content: Content, words: Words) -> list[Text]:
+    without = [row.name for row in content.artefacts if row.dimension is not None and not row.u_mm]
+    found = [words("excluded.artefacts", names=", ".join(without))] if without else []
+    return found + [words(f"excluded.{key}") for key in NEVER]

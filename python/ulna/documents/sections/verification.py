@@ -1,0 +1,102 @@
+"""The acceptance test: figures with limits, uncertainties and verdicts, formulas, every single value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ulna.documents.content.acceptance import Verification
+from ulna.documents.languages.text import NONE, Style, Text, joined, named, styled
+from ulna.documents.languages.words import Words
+from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table
+from ulna.documents.sections.decision import verdict
+from ulna.ground.digits import figure_mm, rounded, uncertainty
+from ulna.verification.result_file import FigureTable, StateTable, TestedTable, ValueTable
+
+COLUMNS = ("condition", "figure", "verdict", "value-mm", "u-mm", "expanded-mm", "limit-mm", "guard-mm", "values")
+SINGLES = ("condition", "figure", "where", "verdict", "calibrated-mm", "value-mm", "limit-mm", "u-mm")
+STYLES: dict[str | None, Style] = {"pass": "pass", "fail": "fail", "undecided": "undecided", None: "none"}
+
+
+def verification(found: Verification, words: Words) -> list[Block]:
+    """What profile, figures with their verdicts, and where the test departs from its profile."""
+    file = found.file
+    page: list[Block] = [Paragraph(styled(named(file.profile.statement), "english"))]
+    page += [Paragraph(words.say(each), "missing") for each in found.remarks]
+    rows = [_figure(state, test, figure, words) for state, test, figure in _figures(found)]
+    note = words("verification.note", k=own(f"{file.decision.k:g}"), p=own(f"{100 * file.decision.p:g}"))
+    page += [
+        table("verification", words("section.verification"), words, COLUMNS, rows, left=3),
+        Paragraph(note, "note"),
+    ]
+    for state in file.states:
+        said = [*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)]
+        if said:
+            title = words("verification.departures", state=words(f"state.{state.state}"))
+            page += [Paragraph(title, "missing"), _english(said)]
+    return page
+
+
+def formulas(found: Verification, words: Words) -> list[Block]:
+    """Each figure's formula, and what no uncertainty of a test value holds."""
+    figures = [figure for *_, figure in _figures(found)]
+    by_name = {figure.name: figure.formula for figure in figures}
+    facts = [Fact(key, named(key), [styled(named(each), "english")]) for key, each in by_name.items()]
+    page: list[Block] = [Heading(words("verification.formulas")), Facts(facts)]
+    left_out = list(dict.fromkeys(each for figure in figures for each in figure.left_out))
+    if left_out:
+        page += [Paragraph(words("verification.left-out")), _english(left_out)]
+    return page
+
+
+def singles(found: Verification, words: Words, most: int) -> list[Block]:
+    """The first `most` single values, and how many more there are."""
+    rows = [_single(state, figure, each, words) for state, _, figure in _figures(found) for each in figure.individual]
+    title = words("verification.singles", count=len(rows))
+    page: list[Block] = [Heading(title), table("singles", title, words, SINGLES, rows[:most], left=4)]
+    more = len(rows) - most
+    if more > 0:
+        page.append(Paragraph(words("verification.more", more=more, shown=most), "missing"))
+    return page
+
+
+def _figures(found: Verification) -> Iterator[tuple[StateTable, TestedTable, FigureTable]]:
+    for state in found.file.states:
+        for test in state.tests:
+            for figure in test.figures:
+                yield state, test, figure
+
+
+def _figure(state: StateTable, test: TestedTable, figure: FigureTable, words: Words) -> list[Text]:
+    said = styled(verdict(figure.verdict, words), STYLES[figure.verdict])
+    if figure.why is not None:
+        why = ("(", *styled(named(figure.why), "english"), ")")
+        said = joined([said, styled(why, "aside")], " ")
+    value, expanded = rounded(figure.value, figure.expanded, "mm")
+    numbers = [value, uncertainty(figure.u), expanded, _mm(figure.limit), uncertainty(figure.guard)]
+    return [
+        words(f"state.{state.state}"),
+        joined([named(figure.name), styled(named(test.name), "aside")], " "),
+        said,
+        *(own(each) for each in numbers),
+        own(len(figure.individual)),
+    ]
+
+
+def _single(state: StateTable, figure: FigureTable, each: ValueTable, words: Words) -> list[Text]:
+    where = " / ".join(label for label in (each.artefact, each.position, each.orientation, each.repeat) if label)
+    return [
+        words(f"state.{state.state}"),
+        named(figure.key),
+        named(where),
+        verdict(each.verdict, words),
+        NONE if each.calibrated is None else own(f"{each.calibrated:.4f}"),
+        *(own(shown) for shown in (figure_mm(each.value), _mm(each.limit), uncertainty(each.u))),
+    ]
+
+
+def _mm(value: float | None) -> str:
+    return "–" if value is None else figure_mm(value)
+
+
+def _english(texts: list[str]) -> Listed:
+    return Listed([styled(named(each), "english") for each in texts])

@@ -1,0 +1,76 @@
+"""An arm as a table of Denavit–Hartenberg parameters (CSV), for the engineer of a controller.
+
+One row for each joint, then one for the tip of each probe: a fixed frame that no encoder turns, in the same convention.
+Units stand in the names of the columns.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.arm.frames.links import moved
+from ulna.arm.frames.modified import Convention, to_modified
+from ulna.arm.frames.rigid import pose, turn
+from ulna.arm.joint import Joint
+from ulna.arm.probe import Probe
+from ulna.formats.units import MM_PER, RAD_PER, AngleUnit, LengthUnit
+from ulna.ground.errors import UlnaInputError
+
+#: what stands in the column `joint` of a row that is no joint
+TIP = "tip"
+
+
+def dh_table(arm: Arm, convention: Convention, path: Path, length: LengthUnit = "mm", angle: AngleUnit = "rad") -> str:
+    """The text of the table; `path` is the arm's file, for messages.
+
+    Columns joint, name, sign, theta0, alpha, a, d, where a joint is a Hayati joint also beta, units behind an
+    underscore. turn = sign * encoder - theta0. Raises UlnaInputError for a beta in the modified form.
+    """
+    tilted = [k for k, joint in enumerate(arm.joints, start=1) if joint.beta_rad]
+    if tilted and convention == "modified-dh":
+        raise UlnaInputError(
+            f"{path}: key 'joint.{tilted[0]}.beta': got {arm.joints[tilted[0] - 1].beta_rad:g} rad, which a modified "
+            "table has no column for; expected joints without beta. Export with --convention dh, or calibrate with "
+            f'hold = ["joint.*.beta"] from an arm in which it is 0.'
+        )
+    joints, probes, tip_row = list(arm.joints), arm.probes, _tip
+    if convention == "modified-dh":
+        last = arm.joints[-1]  # what it may have of a link stands behind the last row
+        after = pose(turn("x", last.alpha_rad), np.array([last.a_mm, 0.0, 0.0]))
+        joints, probes, tip_row = to_modified(arm.joints), moved(arm.probes, after), _modified_tip
+    named = [(str(k), joint.name or f"joint {k}", joint) for k, joint in enumerate(joints, start=1)]
+    named += [(TIP, name, tip_row(probe)) for name, probe in probes.items()]
+    columns = [f"theta0_{angle}", f"alpha_{angle}", f"a_{length}", f"d_{length}"]
+    columns += [f"beta_{angle}"] * bool(tilted)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["joint", "name", "sign", *columns])
+    for label, name, row in named:
+        values = [row.theta0_rad / RAD_PER[angle], row.alpha_rad / RAD_PER[angle]]
+        values += [row.a_mm / MM_PER[length], row.d_mm / MM_PER[length]]
+        values += [row.beta_rad / RAD_PER[angle]] * bool(tilted)
+        writer.writerow([label, name, row.sign, *map(_number, values)])
+    return stream.getvalue()
+
+
+def _tip(probe: Probe) -> Joint:
+    """The tip at the end of a link: `Rz(-theta0) · Tz(d) · Tx(a)`, the literature's theta0, h and r."""
+    theta0_rad, r_mm, h_mm = probe.cylindrical
+    return Joint(theta0_rad, 0.0, r_mm, h_mm)
+
+
+def _modified_tip(probe: Probe) -> Joint:
+    """The tip in a frame after the last joint's: `Rx(alpha) · Tx(a) · Tz(d)`."""
+    if not probe.y_mm:
+        return Joint(0.0, 0.0, probe.x_mm, probe.z_mm)
+    return Joint(0.0, math.atan2(-probe.y_mm, probe.z_mm), probe.x_mm, math.hypot(probe.y_mm, probe.z_mm))
+
+
+def _number(value: float) -> str:
+    return repr(float(value) + 0.0)

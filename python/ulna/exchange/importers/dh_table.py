@@ -1,0 +1,188 @@
+"""Reading a table of Denavit–Hartenberg parameters (CSV), as makers and controllers give it.
+
+Columns theta0 (or offset, which is -theta0), alpha, a, d; perhaps beta, sign, joint and name. A row for each joint,
+from the base; rows behind them whose `joint` is `tip` are frames that no encoder turns.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import polars as pl
+
+from ulna.arm.joint import MOST_RAD, Joint
+from ulna.formats.header import Header
+from ulna.formats.names import check_name
+from ulna.formats.table import read_header, read_table
+from ulna.formats.units import MM_PER, RAD_PER
+from ulna.ground.errors import UlnaInputError
+
+WHAT = "a table of Denavit–Hartenberg parameters (CSV with a header theta0 or offset, alpha, a, d)"
+
+ANGLES, LENGTHS = ("theta0", "offset", "alpha", "beta"), ("a", "d")
+LABELS = ("joint", "name")
+
+#: no arm is longer; a wrong unit makes it so
+MOST_MM = 1e6
+
+#: what stands in the column `joint` of a row that is no joint
+TIP = "tip"
+
+
+@dataclass(frozen=True)
+class Table:
+    """The rows as they stand, mm and rad."""
+
+    path: Path
+    joints: list[Joint]
+    tips: dict[str, Joint]
+    """By the probe's name: the frame whose origin is its tip."""
+    mm: float | None
+    """mm in a unit of length of the table; None where its columns have several."""
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column of numbers: which parameter it is, and how many rad or mm a unit of it is."""
+
+    name: str
+    parameter: str
+    factor: float
+
+
+def read_dh(path: Path, length: str | None = None, angle: str | None = None) -> Table:
+    """The rows of a table. A unit is that in the column's name (`a_mm`), or `length` or `angle`; never guessed.
+
+    Raises UlnaInputError naming column, row and value of what cannot be used.
+    """
+    header = read_header(path, WHAT)
+    columns = [_column(name, header, length, angle) for name in header.columns if name not in (*LABELS, "sign")]
+    known = [column.parameter for column in columns]
+    _check_known(header, known)
+    numbers = {column.name for column in columns} | {"sign"}
+    frame = read_table(header, lambda name: name in numbers)
+    rows = [_row(header, k, cells, columns) for k, cells in enumerate(frame.iter_rows(named=True), start=1)]
+    labels = _labels(header, frame)
+    joints = [replace(row, name=name or None) for row, (kind, name) in zip(rows, labels, strict=True) if kind != TIP]
+    if len(joints) < 2:
+        raise UlnaInputError(f"{path}: there are {len(joints)} joints; expected at least two rows. Add them.")
+    tips: dict[str, Joint] = {}
+    for k, (row, (kind, name)) in enumerate(zip(rows, labels, strict=True), start=1):
+        if kind != TIP:
+            continue
+        if name in tips:
+            raise UlnaInputError(
+                f"{path}: {header.where(k)}, column 'name': got '{name}' again; expected a name of its own for each "
+                "tip. Correct it."
+            )
+        tips[name] = row
+    factors = {column.factor for column in columns if column.parameter in LENGTHS}
+    return Table(path, joints, tips, factors.pop() if len(factors) == 1 else None)
+
+
+def _column(name: str, header: Header, length: str | None, angle: str | None) -> _Column:
+    match = re.fullmatch(r"([a-z0-9]+?)(?:_(mm|m|in|rad|deg))?", name)
+    parameter, unit = (match[1], match[2]) if match else (name, None)
+    for known, units, option, given in (
+        (ANGLES, RAD_PER, "--angle-unit", angle),
+        (LENGTHS, MM_PER, "--length-unit", length),
+    ):
+        if parameter not in known or (unit is not None and unit not in units):
+            continue
+        if unit is None and given is None:
+            raise UlnaInputError(
+                f"{header.path}: column '{name}': its unit is not stated and never guessed; expected {option} "
+                f"{' or '.join(units)}, or a name such as {name}_{next(iter(units))}. Add one of them."
+            )
+        if unit is not None and given is not None and unit != given:
+            raise UlnaInputError(
+                f"{header.path}: column '{name}': its name says {unit}, {option} says {given}; expected the same. "
+                "Leave the option out, or rename the column."
+            )
+        return _Column(name, parameter, units[str(unit or given)])
+    if parameter == "theta":
+        raise UlnaInputError(
+            f"{header.path}: column '{name}': is it an offset (turn = encoder + offset) or a zero offset theta0 (turn "
+            "= encoder - theta0)? Expected a column offset or theta0. Rename it; remove it where it is the joint's "
+            "variable."
+        )
+    every = [*ANGLES, *LENGTHS, *LABELS, "sign"]
+    close = difflib.get_close_matches(parameter.lower(), every, n=1)
+    hint = f" Did you mean '{close[0]}'?" if close else ""
+    raise UlnaInputError(
+        f"{header.path}: unknown column '{name}'; expected {', '.join(every)}, a unit behind an underscore where it "
+        f"has one.{hint} Remove or rename it."
+    )
+
+
+def _check_known(header: Header, known: Sequence[str]) -> None:
+    for parameter in known:
+        if known.count(parameter) > 1:
+            raise UlnaInputError(
+                f"{header.path}: the column {parameter} stands twice, in two units; expected it once. Remove one."
+            )
+    if ("theta0" in known) == ("offset" in known):
+        raise UlnaInputError(
+            f"{header.path}: there {'are both columns' if 'offset' in known else 'is no column'} theta0 "
+            f"{'and' if 'offset' in known else 'or'} offset; expected one of them (offset = -theta0). "
+            f"{'Remove one' if 'offset' in known else 'Add it'}."
+        )
+    for parameter in ("alpha", "a", "d"):
+        if parameter not in known:
+            raise UlnaInputError(f"{header.path}: the column {parameter} is missing; expected {WHAT}. Add it.")
+
+
+def _row(header: Header, k: int, cells: dict[str, float], columns: list[_Column]) -> Joint:
+    values = {column.parameter: cells[column.name] * column.factor for column in columns}
+    for column in columns:
+        if column.parameter in ANGLES and abs(values[column.parameter]) > MOST_RAD:
+            raise UlnaInputError(
+                f"{header.path}: {header.where(k)}, column '{column.name}': got {cells[column.name]:g}, more than two "
+                "turns; expected angles within ±4π rad (720°). Are these degrees? State the right unit."
+            )
+    for column in columns:
+        if column.parameter in LENGTHS and not abs(values[column.parameter]) <= MOST_MM:
+            raise UlnaInputError(
+                f"{header.path}: {header.where(k)}, column '{column.name}': got {cells[column.name]:g}; expected "
+                "lengths of at most a kilometre. State the right unit, or correct the cell."
+            )
+    sign = cells.get("sign", 1.0)
+    if sign not in (1.0, -1.0):
+        raise UlnaInputError(
+            f"{header.path}: {header.where(k)}, column 'sign': got {sign:g}, expected 1 or -1. Correct it."
+        )
+    beta_rad = values.get("beta", 0.0)
+    if beta_rad and values["d"]:
+        raise UlnaInputError(
+            f"{header.path}: {header.where(k)}: got a beta and a d; expected one of them, for a Hayati joint has no d. "
+            "Make one of them 0."
+        )
+    theta0_rad = values["theta0"] if "theta0" in values else 0.0 - values["offset"]
+    model = "hayati" if beta_rad else "dh"
+    return Joint(theta0_rad, values["alpha"], values["a"], values["d"], beta_rad, int(sign), model)  # type: ignore[arg-type]
+
+
+def _labels(header: Header, frame: pl.DataFrame) -> list[tuple[str, str]]:
+    """("joint" or "tip", name) of each row; "" where a joint has no name of its own."""
+    kinds = frame["joint"].to_list() if "joint" in frame.columns else [""] * frame.height
+    names = frame["name"].to_list() if "name" in frame.columns else [""] * frame.height
+    found: list[tuple[str, str]] = []
+    for k, (kind, name) in enumerate(zip(kinds, names, strict=True), start=1):
+        where = f"{header.path}: {header.where(k)}, column 'joint'"
+        if kind == TIP:
+            check_name(name or TIP, "name", header.path)
+            found.append((TIP, name or TIP))
+            continue
+        if found and found[-1][0] == TIP:
+            raise UlnaInputError(f"{where}: got '{kind}' behind a tip; expected the joints first. Move the row.")
+        if re.fullmatch(r"[0-9]+", kind) and int(kind) != k:
+            raise UlnaInputError(
+                f"{where}: got {kind}, expected {k}: the joints from the base to the probe, one a row. Sort the rows."
+            )
+        own = "" if kind in ("", str(k)) else kind
+        found.append(("joint", own if name in ("", f"joint {k}") else name))
+    return found

@@ -1,5 +1,0 @@
-"""One room per format of tables: each makes a `ulna.files.header.Header` of a file and reads its rows.
-
-text.py: CSV and its dialects. parquet.py. workbook.py: Excel. matfile.py, hdf5.py: named arrays, whose common rules are
-in arrays.py. `ulna.files.table` is the door: it looks at a file's first bytes and opens the right room.
-"""

@@ -1,0 +1,151 @@
+"""The head of a table: what is known before its rows are read, and how they are read. One subclass per format, below
+`tables/`, so that nobody else asks what kind of file it is.
+
+Rows are data rows counted from 1, the header not counted. Columns have the names that the rest of Ulna uses: its own
+where the study maps them, else the file's.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+import polars as pl
+
+from ulna.ground.arrays import F64, I64
+from ulna.ground.errors import UlnaInputError
+
+#: true for the name of a column that holds numbers
+Numeric = Callable[[str], bool]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Some consecutive data rows of a table."""
+
+    before: int
+    """Number of data rows before the first of these."""
+    numbers: F64
+    """(N, k), finite, C order."""
+    texts: dict[str, pl.Series]
+    """(N,) each, no empty cell."""
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+
+@dataclass(frozen=True)
+class Header(ABC):
+    """A table whose columns are known and whose rows are not yet read."""
+
+    path: Path
+    columns: list[str]
+    theirs: Mapping[str, str] = field(default_factory=dict, kw_only=True)
+    """The file's own name of each column that the study calls otherwise."""
+    what: str = field(default="a table", kw_only=True)
+    """What is expected of the file, in words."""
+
+    @property
+    def head(self) -> str:
+        """How a message calls the place where the columns' names stand: "line 1" of a CSV file."""
+        return "the header"
+
+    @property
+    def rows(self) -> int | None:
+        """Number of data rows; None where nobody knows without reading them."""
+        return None
+
+    def own(self, column: str) -> str:
+        """The file's own name of a column."""
+        return self.theirs.get(column, column)
+
+    def origin(self, column: str) -> str:
+        """Of what a column was made, where that may surprise: "'q' is 7 × 500"; else ""."""
+        return ""
+
+    def find(self, name: str) -> str | None:
+        """The column that is meant by the file's own name or by Ulna's; the file's own names go first."""
+        own = [column for column in self.columns if self.own(column) == name]
+        return own[0] if own else name if name in self.columns else None
+
+    def renamed(self, names: Mapping[str, str]) -> Self:
+        """The same table with its columns called anew: the file's name → Ulna's name."""
+        columns = [names.get(column, column) for column in self.columns]
+        return dataclasses.replace(self, columns=columns, theirs={new: old for old, new in names.items()})
+
+    def named(self, column: str) -> str:
+        """How a message calls a column: `column 'q1'`, or `column 'shoulder' (q1)` where the study maps it."""
+        own = self.own(column)
+        return f"column '{own}'" + (f" ({column})" if own != column else "")
+
+    def where(self, row: int) -> str:
+        """How a message calls a data row: with its line where the file has lines."""
+        return f"row {row}"
+
+    def at(self, row: int, column: str) -> str:
+        """How a message calls a cell."""
+        return f"{self.where(row)}, {self.named(column)}"
+
+    @abstractmethod
+    def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+        """All rows of some columns: Float64 where `numeric` says so, else String. A gap (or NaN, infinity) where a
+        cell is empty or not of that kind; that is no error yet. Raises UlnaInputError for a file that is damaged."""
+
+    def numbers(self, texts: pl.Series) -> pl.Series:
+        """Cells that were read as String, as Float64; a gap where a cell is no number."""
+        return texts.cast(pl.Float64, strict=False)
+
+    @abstractmethod
+    def refusal(self, row: int, column: str, numeric: Numeric) -> str:
+        """The message about a cell that `cells` left as a gap, or that is not finite."""
+
+    def frame(self, numeric: Numeric, columns: Sequence[str], blank: Sequence[str] = ()) -> pl.DataFrame:
+        """All rows of some columns, every cell filled but those of `blank`, every number finite. Raises UlnaInputError
+        naming row, column and value of the first cell that is not."""
+        return self.checked(self.cells(numeric, columns), numeric, blank=blank)
+
+    def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        """The same in pieces of about `rows` rows, in bounded memory where the format allows it. Here it does not."""
+        frame = self.frame(lambda column: column in numbers, [*numbers, *texts])
+        for before in range(0, len(frame), rows):
+            yield self.piece(frame.slice(before, rows), numbers, texts, before)
+
+    def piece(self, frame: pl.DataFrame, numbers: Sequence[str], texts: Sequence[str], before: int) -> Piece:
+        """Checked rows as arrays."""
+        values = np.ascontiguousarray(frame.select(numbers).to_numpy(), dtype=np.float64)
+        return Piece(before, values, {name: frame[name] for name in texts})
+
+    def checked(
+        self,
+        frame: pl.DataFrame,
+        numeric: Numeric,
+        row: I64 | None = None,
+        before: int = 0,
+        blank: Sequence[str] = (),
+    ) -> pl.DataFrame:
+        """The frame, if every cell is filled and every number finite; strings without spaces around them.
+
+        row: (N,) the rows' numbers in the file; without it they follow each other after the first `before`. blank:
+        columns of names in which cells may be empty (""). Raises UlnaInputError.
+        """
+        frame = frame.with_columns(pl.col(name).fill_null("") for name in blank if name in frame.columns)
+        spaced = [c.name for c in frame if c.dtype == pl.String and bool(c.str.contains(r"^\s|\s$").any())]
+        frame = frame.with_columns(pl.col(spaced).str.strip_chars()) if spaced else frame
+        first: tuple[int, str] | None = None
+        for column in frame:
+            if column.name in blank:
+                continue
+            bad = column.is_null()
+            bad |= ~column.is_finite().fill_null(False) if numeric(column.name) else (column == "").fill_null(True)
+            if bad.any():
+                index = int(bad.arg_true()[0])
+                first = (index, column.name) if first is None or index < first[0] else first
+        if first is None:
+            return frame
+        at = before + first[0] + 1 if row is None else int(row[first[0]])
+        raise UlnaInputError(self.refusal(at, first[1], numeric))

@@ -1,0 +1,163 @@
+"""How a table is written where it is not as Ulna expects: separators, sheet, data set, columns by other names.
+
+Nothing of this is guessed. What a file needs and nobody said is an error that names the key; a key that a file has no
+use for is an error too.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
+
+from pydantic import Field
+
+from ulna.formats.header import Header
+from ulna.formats.models import Strict
+from ulna.ground.errors import UlnaInputError, nearest
+
+AnyHeader = TypeVar("AnyHeader", bound=Header)
+
+
+class TableKeys(Strict):
+    """How a table is written; the same keys for readings and for features."""
+
+    separator: str | None = None
+    """CSV: the character between columns, or "tab"; a comma where it is not given."""
+    decimal: Literal[".", ","] | None = None
+    """CSV: the decimal sign; a point where it is not given."""
+    header: bool = True
+    """CSV and Excel: false where the first row is data; the columns are then called c1, c2, …"""
+    sheet: str | None = None
+    """Excel: which sheet, where there are several."""
+    dataset: str | None = None
+    """HDF5: the group or data set that holds the columns; MAT: the struct variable."""
+    columns: Annotated[dict[str, str], Field(min_length=1)] | None = None
+    """Ulna's name = the file's name, where they differ."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The same, checked, and how messages call its keys."""
+
+    KEYS: ClassVar[tuple[str, ...]] = tuple(key for key in TableKeys.model_fields if key != "columns")
+
+    separator: str | None = None
+    """One character."""
+    decimal: str | None = None
+    header: bool = True
+    sheet: str | None = None
+    dataset: str | None = None
+    columns: Mapping[str, str] = field(default_factory=dict)
+    place: tuple[str, str] = ("key '", "'")
+    """Before and after a key's name where a message calls it: `study.toml: key 'readings.1.sheet'`, or `--sheet`."""
+    table: str = "[[readings]]"
+    """Where a key is to be written; "" for options of a command."""
+
+    @classmethod
+    def of(cls, keys: TableKeys, place: tuple[str, str], table: str) -> Layout:
+        """Of a table in a study. Raises UlnaInputError for keys that cannot be meant."""
+        given = {name: getattr(keys, name) for name in TableKeys.model_fields}
+        return cls(**given | {"columns": keys.columns or {}}, place=place, table=table).checked()
+
+    @classmethod
+    def of_options(cls, columns: Sequence[str] | Mapping[str, str] | None = None, **given: Any) -> Layout:
+        """Of options of a command; columns: `q1=shoulder` each, or a mapping. Raises UlnaInputError as `of`."""
+        pairs: dict[str, str] = dict(columns) if isinstance(columns, Mapping) else {}
+        for pair in () if columns is None or isinstance(columns, Mapping) else columns:
+            ours, equals, theirs = pair.partition("=")
+            if not (ours and equals and theirs) or ours in pairs:
+                raise UlnaInputError(
+                    f"--column: got '{pair}'; expected Ulna's name = the file's name, each once, such as "
+                    "q1=shoulder_pan_joint. Correct it."
+                )
+            pairs[ours] = theirs
+        decimal = given.get("decimal")
+        if decimal not in (None, ".", ","):
+            raise UlnaInputError(f"--decimal: got '{decimal}'; expected '.' or ','. Correct it.")
+        return cls(**given, columns=pairs, place=("--", ""), table="").checked()
+
+    def checked(self) -> Layout:
+        """The same, `tab` as the character that it is. Raises UlnaInputError for keys that cannot be meant."""
+        found = dataclasses.replace(self, separator="\t" if self.separator == "tab" else self.separator)
+        found._check_separator()
+        if not found.header and not found.columns:
+            raise UlnaInputError(
+                f"{found.key('header')}: says that the file does not name its columns; expected to be told which they "
+                f"are. Say {found.say('columns', {'q1': 'c1'})}: c1 is the first column of the file."
+            )
+        return found
+
+    def _check_separator(self) -> None:
+        separator, decimal = self.separator, self.decimal
+        if separator is not None and (
+            len(separator) != 1
+            or not (separator == "\t" or " " <= separator <= "~")
+            or separator.isalnum()
+            or separator in "\"'.+-_"
+        ):
+            raise UlnaInputError(
+                f"{self.key('separator')}: got {separator!r}; expected one character that is no letter, digit, quote, "
+                "sign or point, such as ';' or '|', or 'tab'. Correct it."
+            )
+        if decimal == "," and separator in (None, ","):
+            got = "but there is no key 'separator'" if separator is None else "and the separator is a comma as well"
+            raise UlnaInputError(
+                f"{self.key('decimal')}: numbers have a decimal comma, {got}; expected another sign between columns. "
+                f"Say which, such as {self.say('separator', ';')}."
+            )
+
+    def key(self, name: str) -> str:
+        """How a message calls a key that was given."""
+        if not self.table:
+            name = {"columns": "column", "header": "no-header"}.get(name, name)
+        return name.join(self.place)
+
+    def say(self, name: str, value: str | bool | Mapping[str, str]) -> str:
+        """What to write to say something of the table: a key with its value, and where; or an option."""
+        if isinstance(value, Mapping):
+            pairs = [f'{ours} = "{theirs}"' for ours, theirs in value.items()]
+            text = f"{name} = {{ {', '.join(pairs)}, … }}"
+            option = " ".join(f"--column {ours}={theirs}" for ours, theirs in value.items())
+        elif isinstance(value, bool):
+            text, option = f"{name} = {str(value).lower()}", f"--no-{name}"
+        else:
+            text, option = f'{name} = "{value}"', f'--{name} "{value}"'
+        return f"{text} in {self.table}" if self.table else option
+
+    @property
+    def given(self) -> list[str]:
+        """The keys that say something of a file, but `columns`, in their order."""
+        return [key for key in self.KEYS if getattr(self, key) != getattr(AS_EXPECTED, key)]
+
+    def mapped(self, header: AnyHeader, known: Sequence[str]) -> AnyHeader:
+        """The table with its columns called as `columns` says. `known`: Ulna's names. Raises UlnaInputError."""
+        theirs: dict[str, str] = {}
+        for ours, name in self.columns.items():
+            if ours not in known:
+                raise UlnaInputError(
+                    f"{self.key('columns')}: '{ours}' is no column that Ulna knows; expected Ulna's name = the file's "
+                    f"name.{nearest(ours, known)} Correct it."
+                )
+            if name not in header.columns:
+                raise UlnaInputError(
+                    f"{self.key('columns')}: {ours} is to be the column '{name}', but {header.path} has none of this "
+                    f"name.{nearest(name, header.columns)} Correct it."
+                )
+            if name in theirs:
+                raise UlnaInputError(
+                    f"{self.key('columns')}: {theirs[name]} and {ours} are both to be the column '{name}' of "
+                    f"{header.path}; expected one name for each column. Correct one of them."
+                )
+            theirs[name] = ours
+        for name, ours in theirs.items():
+            if ours in header.columns and ours not in theirs:
+                raise UlnaInputError(
+                    f"{self.key('columns')}: {ours} is to be the column '{name}', but {header.path} has a column "
+                    f"'{ours}' as well; expected one of them. Remove {ours} from the key, or rename a column."
+                )
+        return header.renamed({name: ours for name, ours in theirs.items() if name != ours})
+
+
+AS_EXPECTED = Layout()

@@ -1,0 +1,88 @@
+"""Parquet tables: Polars reads the columns, PyArrow the pieces of long files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+import polars as pl
+import polars.exceptions
+
+from ulna.formats.cells import bad_cell, names_of, no_numbers
+from ulna.formats.header import Header, Numeric, Piece
+from ulna.formats.layout import Layout
+from ulna.formats.tables.format import TableFormat
+from ulna.ground.errors import UlnaInputError
+
+_PAGE_BUFFER_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class ParquetTable(Header):
+    """A table of typed columns."""
+
+    @property
+    def rows(self) -> int:
+        return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
+
+    def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+        try:
+            stored = pl.read_parquet(self.path, columns=[self.own(name) for name in columns])
+        except (polars.exceptions.PolarsError, OSError) as error:
+            self._unreadable(error)
+        found = []
+        for name in columns:
+            column = stored[self.own(name)].rename(name)
+            if numeric(name) and not column.dtype.is_numeric():
+                value = column[0] if len(column) else None
+                raise UlnaInputError(no_numbers(self, 1, name, value, str(column.dtype)))
+            found.append(column.cast(pl.Float64) if numeric(name) else names_of(column))
+        return pl.DataFrame(found)
+
+    def refusal(self, row: int, column: str, numeric: Numeric) -> str:
+        value = pl.scan_parquet(self.path).select(self.own(column)).slice(row - 1, 1).collect().item()
+        return bad_cell(self, row, column, "" if value is None else str(value), numeric)
+
+    def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
+        import pyarrow.parquet
+
+        from ulna.formats.tables.arrow import array_piece
+
+        columns = [*numbers, *texts]
+        before = 0
+        try:
+            with pyarrow.parquet.ParquetFile(self.path, pre_buffer=False, buffer_size=_PAGE_BUFFER_BYTES) as file:
+                for batch in file.iter_batches(rows, columns=[self.own(name) for name in columns]):
+                    stored = pa.table({name: batch.column(self.own(name)) for name in columns})
+                    if stored.num_rows:
+                        yield array_piece(self, stored, numbers, texts, before)
+                        before += stored.num_rows
+        except (pa.ArrowException, OSError) as error:
+            self._unreadable(error)
+
+    def _unreadable(self, error: Exception) -> NoReturn:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}.") from None
+
+
+def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> ParquetTable:
+    """Raises UlnaInputError for a damaged file."""
+    try:
+        return ParquetTable(path, list(pl.read_parquet_schema(path)), what=what)
+    except (polars.exceptions.PolarsError, OSError) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None
+
+
+PARQUET = TableFormat(
+    name="Parquet",
+    listed="Parquet",
+    kind="a Parquet file",
+    endings=(".parquet",),
+    keys=(),
+    recognised=lambda start: start.startswith(b"PAR1"),
+    open=open_parquet,
+)

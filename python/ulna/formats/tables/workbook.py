@@ -1,0 +1,230 @@
+"""Excel workbooks (.xlsx): one sheet as a table, its first row the header.
+
+Calamine reads the values. A cell that cannot be used is looked at once more in the file itself (workbook_cell.py),
+because a formula that nobody has computed, an error and a merged cell are all empty to it.
+"""
+
+from __future__ import annotations
+
+import datetime
+import re
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, SheetTypeEnum
+
+from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
+from ulna.formats.header import Header, Numeric
+from ulna.formats.layout import Layout
+from ulna.formats.tables.format import TableFormat
+from ulna.formats.tables.workbook_cell import address, stored_cell
+from ulna.ground.errors import UlnaInputError, nearest
+
+_ZIP, _OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
+
+
+@dataclass(frozen=True)
+class SheetTable(Header):
+    """One sheet of a workbook, read whole."""
+
+    sheet: str
+    lines: int
+    """Rows of the header; 0 where the sheet has none."""
+    grid: list[list[Any]] = field(repr=False)
+    """Cells of each data row, from column A on; "" where empty."""
+    places: list[int] = field(repr=False)
+    """Where each column stands in `grid`: columns that are all blank are passed over."""
+    merged: list[tuple[tuple[int, int], tuple[int, int]]] = field(repr=False)
+    """First and last cell (row, column from 0) of merged ones."""
+
+    @property
+    def head(self) -> str:
+        return f"row 1 of sheet '{self.sheet}'"
+
+    @property
+    def rows(self) -> int:
+        return len(self.grid)
+
+    def where(self, row: int) -> str:
+        return f"row {row} (row {row + self.lines} of sheet '{self.sheet}')"
+
+    def at(self, row: int, column: str) -> str:
+        return f"row {row} ({self._cell(row, column)}), {self.named(column)}"
+
+    def _cell(self, row: int, column: str) -> str:
+        return address(self.sheet, row + self.lines - 1, self.places[self.columns.index(column)])
+
+    def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+        found = []
+        for name in columns:
+            k = self.places[self.columns.index(name)]
+            values = [row[k] if k < len(row) else "" for row in self.grid]
+            if numeric(name):
+                plain = [value if type(value) in (int, float) else None for value in values]
+                found.append(pl.Series(name, plain, dtype=pl.Float64))
+            else:
+                found.append(pl.Series(name, [_name(value) for value in values], dtype=pl.String))
+        return pl.DataFrame(found)
+
+    def refusal(self, row: int, column: str, numeric: Numeric) -> str:
+        line, k = row + self.lines - 1, self.places[self.columns.index(column)]
+        cells = self.grid[row - 1]
+        value: Cell = cells[k] if k < len(cells) else ""
+        at = f"{self.path}: {self.at(row, column)}"
+        kind = "number" if numeric(column) else "name"
+        if _blank(value):
+            formula, text = stored_cell(self.path, self.sheet, address("", line, k))
+            if text.startswith("#"):
+                return f"{at}: got the error {text}; expected a {kind}. Correct what it comes from, or remove the row."
+            if formula is not None:
+                return (
+                    f"{at}: got the formula '={formula[:40]}', whose result is not in the file; expected a {kind}. "
+                    "Open the workbook in Excel or LibreOffice and save it: that computes its formulas."
+                )
+            for (top, left), (bottom, right) in self.merged:
+                if top <= line <= bottom and left <= k <= right:
+                    area = f"{address('', top, left)}:{address('', bottom, right)}"
+                    return (
+                        f"{at}: is one of the merged cells {area}, of which only the first has a value; expected a "
+                        f"{kind} in each. Unmerge them and fill each."
+                    )
+        elif isinstance(value, datetime.date | datetime.time | datetime.timedelta):
+            return (
+                f"{at}: got the date or time '{_name(value)}', expected a number. Format the cells as numbers, and "
+                "enter again what was taken for a date."
+            )
+        elif isinstance(value, str) and (number_of(value) is not None or is_decimal_comma(value)):
+            return (
+                f"{at}: got '{value[:40]}' as a text, expected a number. Turn the texts of this column into numbers, "
+                "or write them again with numbers."
+            )
+        return bad_cell(self, row, column, str(_name(value) or ""), numeric)
+
+
+def _blank(value: Cell) -> bool:
+    return isinstance(value, str) and not value.strip()
+
+
+def _name(value: Cell) -> str | None:
+    """A cell as a label: 3 and not 3.0, as it is shown and as it would be in a CSV file."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return str(int(value)) if value.is_integer() else repr(value)
+    if isinstance(value, datetime.datetime):
+        return value.isoformat(sep=" ").removesuffix(" 00:00:00")
+    return str(value) or None
+
+
+def open_workbook(path: Path, start: bytes, what: str, layout: Layout) -> SheetTable:
+    """One sheet of a workbook. Raises UlnaInputError for other archives, damaged ones, and a sheet left open."""
+    _check_kind(path, start, what)
+    try:
+        workbook = CalamineWorkbook.from_path(path)
+        names = [each.name for each in workbook.sheets_metadata if each.typ == SheetTypeEnum.WorkSheet]
+        name = _chosen(names, path, layout)
+        sheet = workbook.get_sheet_by_name(name)
+        return _table(path, sheet, sheet.to_python(skip_empty_area=False), layout)
+    except CalamineError as error:
+        raise _unreadable(path, what, error) from None
+
+
+def _unreadable(path: Path, what: str, error: Exception) -> UlnaInputError:
+    reason = " ".join(str(error).split())
+    reason = reason if len(reason) > 3 else type(error).__name__
+    return UlnaInputError(
+        f"{path}: this looks like an Excel workbook, but cannot be read ({reason}); expected {what}. Save it again as "
+        ".xlsx. Export the sheet as CSV where that does not help."
+    )
+
+
+def _check_kind(path: Path, start: bytes, what: str) -> None:
+    """What else is a zip archive, or was once an Excel workbook."""
+    if start.startswith(_OLD):
+        raise UlnaInputError(
+            f"{path}: this is an old Excel workbook (.xls), or one with a password; expected {what}. Save it as .xlsx "
+            "without a password."
+        )
+    try:
+        with zipfile.ZipFile(path) as archive:
+            inside = set(archive.namelist())
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+        raise _unreadable(path, what, error) from None
+    if "[Content_Types].xml" in inside and any(re.match(r"xl/.*\.xml", name) for name in inside):
+        return
+    kind = "a zip archive"
+    if "xl/workbook.bin" in inside:
+        kind = "a binary Excel workbook (.xlsb)"
+    elif "mimetype" in inside:
+        kind = "an OpenDocument file"
+    raise UlnaInputError(f"{path}: this is {kind}; expected {what}. Save the table as .xlsx or CSV.")
+
+
+def _chosen(names: list[str], path: Path, layout: Layout) -> str:
+    if layout.sheet is not None:
+        if layout.sheet not in names:
+            raise UlnaInputError(
+                f"{layout.key('sheet')}: got '{layout.sheet}', but {path} has no such sheet."
+                f"{nearest(layout.sheet, names)} Correct it."
+            )
+        return layout.sheet
+    if len(names) != 1:
+        raise UlnaInputError(
+            f"{path}: there are {len(names)} sheets ({', '.join(names)[:200]}); expected to be told which. Say "
+            f"{layout.say('sheet', names[0] if names else '…')}, or whichever it is."
+        )
+    return names[0]
+
+
+def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layout) -> SheetTable:
+    while grid and all(map(_blank, grid[-1])):  # rows that were cleared, or only have a colour
+        grid.pop()
+    if not grid:
+        raise UlnaInputError(f"{path}: sheet '{sheet.name}' is empty; expected a table. Name another sheet or file.")
+    lines = int(layout.header)
+    used = [k for k in range(max(map(len, grid))) if any(k < len(row) and not _blank(row[k]) for row in grid)]
+    names = [(_name(grid[0][k]) or "").strip() if k < len(grid[0]) else "" for k in used]
+    if lines and not any(names):
+        raise UlnaInputError(
+            f"{path}: row 1 of sheet '{sheet.name}' is blank; expected the names of the columns there. Remove the rows "
+            "above them."
+        )
+    for k, name in zip(used, names, strict=True):
+        if lines and not name:
+            line = next(line for line, row in enumerate(grid) if not _blank(row[k]))
+            raise UlnaInputError(
+                f"{path}: {address(sheet.name, line, k)}: got '{str(grid[line][k])[:40]}' in a column without a name; "
+                "expected a name in row 1 for every column. Name the column, clear the cell, or remove what stands "
+                "above the header."
+            )
+    for line, row in enumerate(grid[lines:], start=lines):
+        if _blank(row[used[0]]) and all(map(_blank, row)):
+            raise UlnaInputError(
+                f"{path}: row {line + 1 - lines} (row {line + 1} of sheet '{sheet.name}') is blank; expected a "
+                "reading. Remove the row."
+            )
+    return SheetTable(
+        path,
+        names if lines else [f"c{k + 1}" for k in used],
+        sheet=sheet.name,
+        lines=lines,
+        grid=grid[lines:],
+        places=used,
+        merged=list(sheet.merged_cell_ranges or ()),
+    )
+
+
+EXCEL = TableFormat(
+    name="Excel",
+    listed=".xlsx",
+    kind="an Excel workbook",
+    endings=(".xlsx", ".xlsm"),
+    keys=("sheet", "header"),
+    recognised=lambda start: start.startswith((_ZIP, _OLD)),
+    open=open_workbook,
+)

@@ -1,0 +1,41 @@
+"""Rigid motions: the best of one set of points onto another (Kabsch 1976, Acta Cryst. A32)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ulna.ground.arrays import F64, I64
+
+
+def rotations(cross: F64) -> F64:
+    """(S, 3, 3) of Σ b aᵀ → (S, 3, 3) the rotations R, never mirrors, for which Σ ‖b - R a‖² is least."""
+    u, _, vt = np.linalg.svd(cross)
+    u[:, :, 2] *= np.linalg.det(u @ vt)[:, np.newaxis]
+    found: F64 = u @ vt
+    return found
+
+
+def placed(reference_mm: F64, measured_mm: F64, code: I64) -> F64:
+    """(N, 3), (N, 3), (N,) numbers of sets: reference points after their set's best motion onto the measured ones."""
+    counts = np.bincount(code)
+    reference_mean, measured_mean = _means(reference_mm, code, counts), _means(measured_mm, code, counts)
+    reference, measured = reference_mm - reference_mean[code], measured_mm - measured_mean[code]
+    cross = np.empty((len(counts), 3, 3))
+    for i in range(3):
+        for j in range(3):
+            cross[:, i, j] = np.bincount(code, measured[:, i] * reference[:, j], len(counts))
+    found: F64 = np.einsum("nij,nj->ni", rotations(cross)[code], reference) + measured_mean[code]
+    return found
+
+
+def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
+    """(K, 3) directions in the frame of (K, 3) points → (S, K, 3) where the points are (S, K, 3)."""
+    middle = own - own.mean(axis=0)
+    there = placed_mm - placed_mm.mean(axis=1, keepdims=True)
+    found: F64 = directions @ rotations(np.einsum("skj,ki->sji", there, middle)).transpose(0, 2, 1)
+    return found
+
+
+def _means(values: F64, group: I64, counts: I64) -> F64:
+    """(N, k) → (groups, k)."""
+    return np.stack([np.bincount(group, column, len(counts)) for column in values.T], axis=1) / counts[:, np.newaxis]

@@ -1,0 +1,3 @@
+"""The version of Ulna, said once."""
+
+VERSION = "0.1.0"

@@ -1,0 +1,1 @@
+"""Measuring with a calibrated arm: points, their uncertainties, what they depend on."""

@@ -1,0 +1,238 @@
+"""One run over a file of readings: columns checked first, then piece by piece angles, points, uncertainties."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from ulna.arm.arm import Arm
+from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
+from ulna.arm.covariance_file import noise_of_result
+from ulna.arm.file import WHAT
+from ulna.formats.header import Header, Piece
+from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.table import count_rows, read_header, stream
+from ulna.formats.toml import check_format, read_json
+from ulna.formats.units import MM_PER
+from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
+from ulna.study.readings.checks import Outside, check_scale
+from ulna.study.readings.columns import check_columns, known_columns
+from ulna.study.readings.conditions import check_values, columns_of
+from ulna.study.readings.readings import WHAT as WHAT_READINGS
+
+F64 = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+
+class MeasureJob:
+    """One run of `measure`: knows the columns before the first row is read."""
+
+    def __init__(
+        self,
+        arm: Arm | str | Path,
+        readings: Path,
+        probe: str | None = None,
+        angle: str = "rad",
+        units: str = "mm",
+        encoder_u_rad: F64 | None = None,
+        layout: Layout = AS_EXPECTED,
+        temperature_c: float | None = None,
+        covariance: bool = False,
+    ) -> None:
+        """Raises UlnaInputError for whatever is wrong before the first row."""
+        if isinstance(arm, Arm):
+            self.arm = arm
+        else:
+            self.arm, stated_rad = load_arm_and_noise(Path(arm))
+            encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        if units not in MM_PER:
+            raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
+        self.unit = units
+        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
+        self._angle = angle
+        self._rad_per = self._angle_factors(angle)
+        self._q = [f"q{k + 1}" for k in range(self.arm.n)]
+        remarks: list[str] = []
+        check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        self._given = {"temperature_c": temperature_c}
+        self._columns = self._needed(remarks)
+        self._numbers = [*self._q, *(column for columns in self._columns.values() for column in columns)]
+        self._texts = [name for name in ("id", "probe") if name in self.header.columns]
+        self._probe = self._fixed_probe(probe, remarks)
+        if "p1" in self.header.columns:
+            remarks.append(f"{self.header.path}: two poses a row: only those of q1 … q{self.arm.n} are measured.")
+        for remark in remarks:
+            warnings.warn(remark, InputWarning, stacklevel=2)
+        self._covariance = covariance
+        self._uncertainty: TipUncertainty | None = None
+        if self.arm.uncertainty is not None:
+            self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
+        elif covariance:
+            raise UlnaInputError(
+                f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
+                "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
+            )
+        self._outside = Outside(self.arm, "q")
+        self.rows = 0
+
+    @property
+    def columns(self) -> list[str]:
+        """Of the output."""
+        u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
+        beside = ["c_xy", "c_xz", "c_yz"] if self._covariance else []
+        return [*self._texts, "x", "y", "z", *u, *beside]
+
+    def check(self) -> None:
+        """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
+        cannot be taken back."""
+        for piece in self._pieces():
+            self._angles(piece)
+            self._probes(piece)
+            self._conditions(piece)
+        self._outside = Outside(self.arm, "q")
+
+    def frames(self, progress: Progress | None = None) -> Iterator[pl.DataFrame]:
+        """The output in pieces. Warns with InputWarning of readings outside the joints' limits."""
+        total = count_rows(self.header)
+        for piece in self._pieces():
+            yield self._measured(piece)
+            self.rows += len(piece)
+            if progress is not None:
+                progress("measure", self.rows, total)
+        if not self.rows:
+            raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        for remark in self._outside.remarks(self.header.path):
+            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=2)
+
+    @property
+    def notes(self) -> list[str]:
+        """Why uncertainties were left empty; complete when `frames` are used up."""
+        return [] if self._uncertainty is None else self._uncertainty.notes
+
+    def _pieces(self) -> Iterator[Piece]:
+        return stream(self.header, self._numbers, self._texts)
+
+    def _measured(self, piece: Piece) -> pl.DataFrame:
+        q_rad = self._angles(piece)
+        probe = self._probes(piece)
+        conditions = self._conditions(piece)
+        p_mm = self.arm.core.tip(q_rad, probe, **conditions)
+        values = [p_mm / MM_PER[self.unit]]
+        if self._uncertainty is not None:
+            c_mm2 = np.empty((len(p_mm), 6))
+            for k in np.unique(probe):
+                rows = slice(None) if isinstance(probe, int) else np.flatnonzero(probe == k)
+                at = some_of(conditions, rows)
+                c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), at)
+            values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
+            if self._covariance:
+                values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
+        numbers = np.concatenate(values, axis=1)
+        columns = dict(piece.texts)
+        for k, name in enumerate(self.columns[len(self._texts) :]):
+            columns[name] = pl.Series(name, np.ascontiguousarray(numbers[:, k]), nan_to_null=True)
+        return pl.DataFrame(columns)
+
+    def _angles(self, piece: Piece) -> F64:
+        q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
+        q_rad = q if self._angle == "rad" else q * self._rad_per
+        row = np.arange(piece.before + 1, piece.before + len(q) + 1)
+        check_scale(q_rad, "q", self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
+        self._outside.add(q_rad, row)
+        return q_rad
+
+    def _conditions(self, piece: Piece) -> Conditions:
+        """Raises UlnaInputError for a cell that says what cannot be."""
+        said: dict[str, Any] = dict(self._given)
+        row = np.arange(piece.before + 1, piece.before + 1 + len(piece))
+        for condition, columns in self._columns.items():
+            at = self._numbers.index(columns[0])
+            values = np.ascontiguousarray(piece.numbers[:, at : at + len(columns)])
+            check_values(values, columns, condition, self.header, row)
+            said[condition.said] = values[:, 0] if columns == [condition.name] else values
+        return self.arm.conditions(len(piece), **said)
+
+    def _needed(self, remarks: list[str]) -> dict[Condition, list[str]]:
+        """The columns that say what points depend on beside angles. Raises UlnaInputError where nothing says it."""
+        found: dict[Condition, list[str]] = {}
+        if self._given["temperature_c"] is not None and TEMPERATURE not in self.arm.needs:
+            remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
+        for condition, effect in self.arm.needs.items():
+            columns = columns_of(condition, condition.name, self.header.columns, self.arm.n)
+            given = self._given.get(condition.said)
+            if not columns and given is None:
+                raise UlnaInputError(
+                    f"{self.header.path}: no column '{condition.name}{'' if condition.common else 1}', but the "
+                    f"{effect.whose} of arm '{self.arm.name}' {effect.does}; expected {condition.columns}. Add it"
+                    f"{f', or give {condition.option} for all' if condition.option else ''}."
+                )
+            if columns and given is not None:
+                remarks.append(
+                    f"{self.header.path}: the {condition.name} given for all is not used: the file has its own."
+                )
+            if columns:
+                found[condition] = columns
+        return found
+
+    def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
+        if self._probe is not None:
+            return self._probe
+        names = list(self.arm.probes)
+        column = piece.texts["probe"]
+        index = column.replace_strict(names, list(range(len(names))), default=-1, return_dtype=pl.Int64).to_numpy()
+        if (index < 0).any():
+            row = int(np.argmax(index < 0))
+            raise UlnaInputError(
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, 'probe')}: arm "
+                f"'{self.arm.name}' has no probe '{column[row]}'.{nearest(str(column[row]), names)}"
+            )
+        return np.ascontiguousarray(index)
+
+    def _fixed_probe(self, probe: str | None, remarks: list[str]) -> int | None:
+        if "probe" not in self.header.columns:
+            if probe is None and len(self.arm.probes) > 1:
+                raise UlnaInputError(
+                    f"{self.header.path}: no column 'probe', and arm '{self.arm.name}' has {len(self.arm.probes)} "
+                    f"probes; say which is on: --probe {' or --probe '.join(self.arm.probes)}."
+                )
+            return self.arm.probe_index(probe)
+        if probe is not None:
+            self.arm.probe_index(probe)
+            remarks.append(f"{self.header.path}: --probe {probe} is not used: the file has its own column 'probe'.")
+        return None
+
+    def _angle_factors(self, angle: str) -> F64:
+        if angle == "rad":
+            return np.ones(self.arm.n)
+        if angle == "deg":
+            return np.full(self.arm.n, math.pi / 180.0)
+        if angle != "counts":
+            raise UlnaInputError(
+                f"measure: angle '{angle}'; expected rad, deg or counts.{nearest(angle, ('rad', 'deg', 'counts'))}"
+            )
+        for k, joint in enumerate(self.arm.joints, start=1):
+            if joint.counts_per_turn is None:
+                raise UlnaInputError(
+                    f"arm '{self.arm.name}': key 'joint.{k}.counts_per_turn' is missing, which readings in counts "
+                    "need. Add it to the arm file."
+                )
+        return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
+
+
+def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
+    """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
+    stated. Raises UlnaInputError."""
+    if path.suffix.lower() != ".json":
+        return Arm.load(path), None
+    document, _ = read_json(path, WHAT)
+    check_format(document, path, "ulna-result")
+    arm = Arm.of_result(document, path)
+    return arm, noise_of_result(document, arm, path)

@@ -1,0 +1,133 @@
+"""How uncertain a measured point is: from the calibration's covariance and, where stated, the encoders' noise.
+
+GUM's law of propagation: C_tip = J C Jᵀ + J_q Σ_q J_qᵀ. Where the tip depends on something that the calibration could
+not determine, no uncertainty is quoted and the reason is told.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ulna.arm.arm import Arm
+from ulna.arm.conditions import NOTHING, Conditions, some_of
+from ulna.arm.directions import steps, worth_naming
+from ulna.work.cores import available_cores
+
+F64 = NDArray[np.float64]
+
+DIAGONAL, BESIDE = [0, 3, 5], [1, 2, 4]
+"""Of xx, xy, xz, yy, yz, zz."""
+
+_BLOCK_ROWS = 16384
+"""Rows that one thread takes at a time."""
+
+MOVES_MM = 1e-3
+"""A lost direction matters at a pose where a step along it moves the tip by more than this, mm: a step as large as a
+drawing leaves open (`ulna.arm.directions.DRAWN`)."""
+
+
+class TipUncertainty:
+    """Standard uncertainties of tip coordinates of a calibrated arm; collects notes on what it cannot say."""
+
+    def __init__(self, arm: Arm, encoder_u_rad: F64 | None = None) -> None:
+        """`arm.uncertainty` must be set; `encoder_u_rad` (n,): standard deviation of each encoder reading."""
+        assert arm.uncertainty is not None
+        self._core = arm.core
+        self._probe_names = list(arm.probes)
+        self._covariances = [_covariance(arm, name, encoder_u_rad) for name in arm.probes]
+        self._estimated = bool(np.isfinite(arm.uncertainty.matrix).all())
+        self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
+        index = {name: k for k, name in enumerate(arm.parameter_names)}
+        self._lost_columns = np.array(sorted({index[n] for d in self._lost for n in d["combination"]}), dtype=np.int64)
+        self._directions = np.zeros((len(self._lost), len(self._lost_columns)))
+        for row, direction in enumerate(self._lost):
+            for name, weight in direction["combination"].items():
+                self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
+            self._directions[row] /= max(steps(direction["combination"]).values())
+        self._told: dict[tuple[int, int], None] = {}
+        self._pool = ThreadPoolExecutor(available_cores())
+
+    def of(self, q_rad: F64, probe: int, conditions: Conditions = NOTHING) -> F64:
+        """(N, n) → (N, 3) standard uncertainties, mm; NaN as for `covariance`."""
+        u_mm: F64 = np.sqrt(np.maximum(self.covariance(q_rad, probe, conditions)[:, DIAGONAL], 0.0))
+        return u_mm
+
+    def covariance(self, q_rad: F64, probe: int, conditions: Conditions = NOTHING) -> F64:
+        """(N, n) → (N, 6) mm²: xx, xy, xz, yy, yz, zz of the tip's covariance matrix.
+
+        NaN where the tip depends on what was not determined. conditions: as `Arm.conditions`.
+        """
+        if not self._estimated:
+            return np.full((len(q_rad), 6), np.nan)
+
+        def block(start: int) -> F64:
+            rows = slice(start, start + _BLOCK_ROWS)
+            return self._block(q_rad[rows], probe, some_of(conditions, rows))
+
+        found = np.concatenate([np.empty((0, 6)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
+        if self._lost:
+            moved = self._effect_mm(q_rad, probe, conditions, self._directions) > MOVES_MM
+            if moved.any():
+                found[moved] = np.nan
+                self._tell_which(q_rad[moved], probe, some_of(conditions, moved))
+        return found
+
+    def _block(self, q_rad: F64, probe: int, conditions: Conditions) -> F64:
+        parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
+        return self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], **conditions)
+
+    def _effect_mm(self, q_rad: F64, probe: int, conditions: Conditions, directions: F64) -> F64:
+        return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, **conditions)
+
+    def _tell_which(self, q_rad: F64, probe: int, conditions: Conditions) -> None:
+        for row in range(len(self._lost)):
+            if (row, probe) in self._told:
+                continue
+            if (self._effect_mm(q_rad, probe, conditions, self._directions[row : row + 1]) > MOVES_MM).any():
+                self._told[row, probe] = None
+
+    @property
+    def notes(self) -> list[str]:
+        """What was left empty, why, and what to do about it."""
+        if not self._estimated:
+            return [
+                "u_x, u_y, u_z are left empty: the calibration had no degrees of freedom to estimate uncertainties "
+                "from. Calibrate with more readings, or state the noise in the study."
+            ]
+        return [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
+
+
+def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
+    """(parameters, parameters), standing for the calibration and, for this probe, the encoders; zero where held.
+
+    An encoder's noise acts as noise of its joint's zero offset (turn = sign q - theta0); of a last joint that has none,
+    as noise of the tip across its axis: the tip turns with it.
+    """
+    known = arm.uncertainty
+    assert known is not None
+    names = arm.parameter_names
+    whole = known.over(names)
+    if encoder_u_rad is not None:
+        linked = arm.n if arm.full_last_link else arm.n - 1
+        offsets = [names.index(f"joint.{k}.theta0") for k in range(1, linked + 1)]
+        whole[offsets, offsets] += encoder_u_rad[:linked] ** 2
+        if arm.full_last_link:
+            return whole
+        tip = [names.index(f"probe.{probe}.{axis}") for axis in "xyz"]
+        x_mm, y_mm, _ = arm.probes[probe].tip_mm
+        across = np.array([-y_mm, x_mm, 0.0])
+        whole[np.ix_(tip, tip)] += encoder_u_rad[-1] ** 2 * np.outer(across, across)
+    return whole
+
+
+def _note(direction: dict[str, Any], probe: str) -> str:
+    names = ", ".join(worth_naming(direction["combination"]))
+    because, remedy = (direction[key].rstrip(".") for key in ("because", "remedy"))
+    return (
+        f"u_x, u_y, u_z are left empty where points of probe '{probe}' depend on a combination of {names} that the "
+        f"calibration could not determine. Why: {because}. Remedy: {remedy}."
+    )

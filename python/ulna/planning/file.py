@@ -1,0 +1,111 @@
+"""Plan files: `ulna-plan/1`, TOML: what to choose measurements of, and what they are to be good for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from ulna.arm.arm import Arm
+from ulna.arm.stated import PositiveEach, TravelTable, VolumeTable, encoder_of, travel_of, volume_of
+from ulna.artefacts.kinds import ArtefactTable, check_kinds, kind_of, made
+from ulna.artefacts.tables import Place
+from ulna.formats.models import Strict, fill
+from ulna.formats.toml import check_format, read_toml
+from ulna.formats.units import Units
+from ulna.planning.spec import Criterion, PlanSpec
+from ulna.study.study import Study
+
+WHAT = 'a plan file (TOML, format = "ulna-plan/1")'
+
+Positive = Annotated[float, Field(gt=0)]
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+
+
+class PlanNoise(Strict):
+    """Standard deviations of the readings to come."""
+
+    encoder: PositiveEach
+    """In the file's angle unit; one number, or one per joint."""
+    seat: Annotated[float, Field(ge=0)] = 0.0
+    """Of a touch, per coordinate, in the file's length unit."""
+
+
+class PlanTable(Strict):
+    """How many to choose, and by what."""
+
+    choose: Count = 100
+    """Measurements; each touches every feature of the artefact."""
+    touches: Annotated[int, Field(ge=1, le=100)] | None = None
+    """Of each feature in a measurement (1); of a sphere or plane: in all (20)."""
+    placements: Count | None = None
+    """Most places in which the artefact may stand."""
+    candidates: Count | None = None
+    """100 000; of a sphere or plane 10 000."""
+    criterion: Criterion = "length"
+    hold: list[str] = Field(default_factory=list)
+    """Parameters that will not be fitted: shell-style patterns."""
+    probe: str | None = None
+    taken: str | None = None
+    """Path of a study whose readings the plan completes, relative to this file."""
+    test_length: Positive | None = None
+    """Of the bars for which length uncertainty is judged."""
+    trials: Annotated[int, Field(ge=0, le=100_000)] = 200
+    """Calibrations simulated on the plan, and as many on random measurements."""
+    seed: Annotated[int, Field(ge=0, le=2**62)] = 0
+
+
+class PlanFile(Strict):
+    """What to plan: `ulna-plan/1`."""
+
+    format: Literal["ulna-plan/1"]
+    units: Units
+    artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1, max_length=1)]
+    """One: a bar, a seat, points, a sphere or a plane."""
+    noise: PlanNoise
+    plan: PlanTable = PlanTable()
+    travel: TravelTable | None = None
+    """How far joints turn, where the arm file has no limits or they shall turn less."""
+    volume: VolumeTable | None = None
+    """Where lengths and points will be measured."""
+    room: VolumeTable | None = None
+    """Where the artefact may stand."""
+
+
+def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
+    """Read what to plan for an arm. Raises UlnaInputError."""
+    document, _ = read_toml(path, WHAT)
+    check_format(document, path, "ulna-plan")
+    check_kinds(document, path)
+    file = fill(PlanFile, document, path)
+    units, table = file.units, file.plan
+    ((name, artefact_table),) = file.artefact.items()
+    place = Place(path, units, [])
+    artefact = made(name, artefact_table, place)
+    kind = kind_of(artefact)
+    study = None if table.taken is None else Study.load(path.parent / table.taken)
+    files = [path, *(each.path for each in place.files)]
+    files += [] if study is None else [file.path for file in study.files]
+    return PlanSpec(
+        artefact=artefact,
+        encoder_rad=np.asarray(encoder_of(file.noise.encoder, arm, path)) * units.rad,
+        seat_mm=file.noise.seat * units.mm,
+        choose=table.choose,
+        touches=table.touches or (kind.touches if kind.scattered else 1),
+        placements=table.placements,
+        candidates=table.candidates or (10_000 if kind.scattered else 100_000),
+        criterion=table.criterion,
+        hold=list(table.hold),
+        probe=table.probe,
+        taken=study,
+        test_mm=None if table.test_length is None else table.test_length * units.mm,
+        travel_rad=travel_of(file.travel, arm, units, path),
+        volume_mm=volume_of(file.volume, units, path),
+        room_mm=volume_of(file.room, units, path, "room"),
+        trials=table.trials,
+        seed=table.seed,
+        label=str(path),
+        files=tuple(files),
+    )

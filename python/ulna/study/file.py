@@ -1,0 +1,169 @@
+"""Study files: `ulna-study/1`, TOML: what to fit to what."""
+
+from __future__ import annotations
+
+import warnings as python_warnings
+from pathlib import Path
+from typing import Any, TypeVar, get_args
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import check_kinds, kind_of, made
+from ulna.artefacts.readings import InputFile, Readings
+from ulna.artefacts.tables import Place
+from ulna.formats.models import fill
+from ulna.formats.rows import Rows
+from ulna.formats.toml import check_format, read_toml
+from ulna.formats.units import Units
+from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.study.data import FitOptions, Noise, Prior, StudyData
+from ulna.study.options import with_options
+from ulna.study.parameters import check_patterns
+from ulna.study.readings.checks import check_limits, check_repeats
+from ulna.study.readings.columns import Source
+from ulna.study.readings.merge import merge
+from ulna.study.readings.own_points import has_own_points
+from ulna.study.readings.readings import read_readings
+from ulna.study.tables import FitTable, NoiseTable, PriorTable, StudyFile
+
+WHAT = 'a study file (TOML, format = "ulna-study/1")'
+
+
+AnyStudy = TypeVar("AnyStudy", bound=StudyData)
+
+
+def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
+    """Read a study and all that it names. Raises UlnaInputError for the first thing that cannot be used.
+
+    rows: of files with the key `split` those to fit, those to check, or both; a file without it is there to fit.
+
+    What can be used with a remark is in `Study.warnings`, and is issued as InputWarning.
+    """
+    document, digest = _document(path)
+    file = fill(StudyFile, document, path)
+    split = _check_rows(file, path, rows)
+    arm_path = path.parent / file.arm
+    arm, arm_digest = Arm.load_and_hash(arm_path)
+    fit = _fit(file.fit, file.units)
+    noise = noise_of_table(file.noise, file.units, arm, path)
+    remarks: list[str] = []
+    files = [InputFile(path, digest, 0), InputFile(arm_path, arm_digest, 0)]
+    artefacts: dict[str, Artefact] = {}
+    place = Place(path, file.units, remarks, files)
+    for name, table in file.artefact.items():
+        artefacts[name] = made(name, table, place)
+    readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
+    study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
+    with_options(study)  # what cannot be asked is told now, not after the work
+    check_patterns(study)
+    for remark in remarks:
+        python_warnings.warn(remark, InputWarning, stacklevel=3)
+    return study
+
+
+def rows_to_judge(path: Path) -> Rows:
+    """The rows with which an arm is judged where nobody says otherwise: those to check where the study has a split,
+    else all. Raises UlnaInputError."""
+    file = fill(StudyFile, _document(path)[0], path)
+    return "check" if any(entry.split is not None for entry in file.readings) else "all"
+
+
+def _document(path: Path) -> tuple[dict[str, Any], str]:
+    document, digest = read_toml(path, WHAT)
+    check_format(document, path, "ulna-study")
+    check_kinds(document, path)
+    return document, digest
+
+
+def _check_rows(file: StudyFile, path: Path, rows: str) -> bool:
+    """Whether the study has a split. Raises UlnaInputError for rows that it does not tell apart."""
+    split = any(entry.split is not None for entry in file.readings)
+    if rows not in get_args(Rows):
+        raise UlnaInputError(f"{path}: rows '{rows}'; expected fit, check or all.{nearest(rows, get_args(Rows))}")
+    if rows == "check" and not split:
+        raise UlnaInputError(
+            f"{path}: the rows to check were asked for, but no [[readings]] has the key 'split'; expected, say, "
+            'split = { column = "set", fit = "train", check = "test" }. Add it, or ask for all rows.'
+        )
+    return split
+
+
+def _readings(
+    file: StudyFile,
+    path: Path,
+    arm: Arm,
+    arm_path: Path,
+    artefacts: dict[str, Artefact],
+    files: list[InputFile],
+    remarks: list[str],
+    rows: Rows,
+) -> list[Readings]:
+    parts: list[Readings] = []
+    for number, entry in enumerate(file.readings, start=1):
+        if rows == "check" and entry.split is None:
+            continue
+        source = Source(path, f"readings.{number}", entry, len(files), arm_path)
+        read, used = read_readings(source, arm, artefacts, file.units, remarks, rows)
+        files.append(used)
+        parts += read
+    groups = merge(parts, artefacts, files, path)
+    for name in artefacts:
+        if rows != "check" and all(group.artefact.name != name for group in groups):
+            remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
+    for group in groups:
+        kind_of(group.artefact).check_readings(group, files, path)
+        check_repeats(group, files, remarks, own_points=has_own_points(artefacts[group.artefact.name]))
+        check_limits(group, arm, files, remarks)
+    return groups
+
+
+def noise_of_table(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Noise | None:
+    """What a file states of noise, in rad and mm. Raises UlnaInputError."""
+    if table is None or (table.encoder is None and table.seat is None):
+        return None
+    encoder_rad = None
+    if table.encoder is not None:
+        each = table.encoder if isinstance(table.encoder, list) else [table.encoder] * arm.n
+        if len(each) != arm.n:
+            raise UlnaInputError(
+                f"{path}: key 'noise.encoder': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
+                f"'{arm.name}'. Correct it."
+            )
+        encoder_rad = np.array(each) * units.rad
+    return Noise(encoder_rad, None if table.seat is None else table.seat * units.mm)
+
+
+def _fit(table: FitTable, units: Units) -> FitOptions:
+    usual = FitOptions()
+
+    def prior(given: float | PriorTable) -> Prior:
+        u, value = (given.u, given.value) if isinstance(given, PriorTable) else (given, None)
+        return Prior(u, value, units.mm, units.rad)
+
+    def mm(given: float | None, usually: float) -> float:
+        return usually if given is None else given * units.mm
+
+    def rad(given: float | None, usually: float) -> float:
+        return usually if given is None else given * units.rad
+
+    return FitOptions(
+        hold=list(table.hold),
+        free=list(table.free),
+        loss=table.loss,
+        start=table.start,
+        extras=list(table.extras),
+        harmonics=list(table.harmonics),
+        prior={pattern: prior(given) for pattern, given in table.prior.items()},
+        judge_extras=table.judge_extras,
+        method=table.method,
+        budget=table.budget,
+        box_length_mm=mm(table.box_length, usual.box_length_mm),
+        box_angle_rad=rad(table.box_angle, usual.box_angle_rad),
+        box_offset_rad=rad(table.box_offset, usual.box_offset_rad),
+        seed=table.seed,
+        max_iterations=table.max_iterations,
+        known_length_mm=mm(table.known_length, usual.known_length_mm),
+        known_angle_rad=rad(table.known_angle, usual.known_angle_rad),
+    )

@@ -1,0 +1,99 @@
+"""Which parameters a study frees, which it holds, and what it knows of them beforehand."""
+
+from __future__ import annotations
+
+import fnmatch
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.arm.effects.effect import Effect
+from ulna.arm.effects.effects import EFFECTS, effect_named, extra_of, with_extras
+from ulna.ground.arrays import Bool
+from ulna.ground.errors import UlnaInputError, nearest
+from ulna.study.data import StudyData
+
+
+def start_arm(study: StudyData) -> Arm:
+    """The study's arm with zero of the blocks that are asked for beyond what it has. Raises UlnaInputError."""
+    arm, extras = study.arm, study.fit.extras
+    for extra in extras:
+        effect_named(extra).check_asked([joint.effects for joint in arm.joints], arm.name, study.label)
+    if not extras:
+        return arm
+    joints = [replace(joint, effects=with_extras(joint.effects, extras, study.fit.harmonics)) for joint in arm.joints]
+    return replace(arm, joints=tuple(joints))
+
+
+def hold_mask(study: StudyData, names: Sequence[str]) -> Bool:
+    """(parameters,) true where not fitted: all but `free`, and `hold`; and blocks of the arm that `extras` leaves out.
+
+    names: of the problem's parameters. Raises UlnaInputError for a pattern that matches none of them.
+    """
+    free = np.zeros(len(names), dtype=bool)
+    for value, patterns, key in ((True, study.fit.free, "fit.free"), (False, study.fit.hold, "fit.hold")):
+        for pattern in patterns:
+            free[matching(study, pattern, names, key)] = value
+    asked = [extra_of(name) in (None, *study.fit.extras) for name in names]
+    hold: Bool = ~(free & np.array(asked, dtype=bool))
+    return hold
+
+
+def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> Bool:
+    """(parameters,) true where the name matches. Raises UlnaInputError where none does."""
+    hits = np.array([fnmatch.fnmatchcase(name, pattern) for name in names], dtype=bool)
+    if not hits.any():
+        off = next((effect.name for effect in EFFECTS.values() if _is_of(effect, pattern)), None)
+        hint = f" Is '{off}' missing in fit.extras?" if off is not None else nearest(pattern, names)
+        raise UlnaInputError(
+            f"{study.label}: key '{key}': the pattern '{pattern}' matches no parameter of arm '{study.arm.name}'; "
+            f"expected a name such as joint.1.theta0 or a pattern such as joint.6.*.{hint}"
+        )
+    return hits
+
+
+def _is_of(effect: Effect, pattern: str) -> bool:
+    """Whether it asks for parameters of an effect."""
+    names = (f"joint.{joint}.{example}" for joint in range(1, 13) for example in effect.examples)
+    return any(fnmatch.fnmatchcase(name, pattern) for name in names)
+
+
+def priors(
+    study: StudyData, names: Sequence[str], units: Sequence[str], values: Sequence[float], hold: Bool
+) -> dict[int, tuple[float, float]]:
+    """Parameter number → (value, standard deviation), of free parameters. Raises UlnaInputError for a vain pattern."""
+    found: dict[int, tuple[float, float]] = {}
+    for k, name in enumerate(names):
+        extra = extra_of(name)
+        u_before = None if extra is None else EFFECTS[extra].prior_u
+        if u_before is not None and not hold[k]:
+            found[k] = (values[k], u_before)
+    for pattern, prior in study.fit.prior.items():
+        for k in np.flatnonzero(matching(study, pattern, names, "fit.prior")).tolist():
+            if not hold[k]:
+                u, value = prior.in_unit(units[k])
+                found[k] = (values[k] if value is None else value, u)
+    return found
+
+
+def check_patterns(study: StudyData) -> None:
+    """Tell of a vain pattern before the work. Dimensions of artefacts are known only when readings are: such patterns
+    are told then. Raises UlnaInputError."""
+    names = start_arm(study).parameter_names
+    of_artefacts = "artefact."
+
+    def known(patterns: Sequence[str]) -> list[str]:
+        return [pattern for pattern in patterns if not pattern.startswith(of_artefacts)]
+
+    fit = replace(
+        study.fit,
+        free=known(study.fit.free),
+        hold=known(study.fit.hold),
+        prior={pattern: prior for pattern, prior in study.fit.prior.items() if not pattern.startswith(of_artefacts)},
+    )
+    early = replace(study, fit=fit)
+    hold_mask(early, names)
+    for pattern in fit.prior:
+        matching(early, pattern, names, "fit.prior")

@@ -1,0 +1,1 @@
+"""Readings from tables: columns, checks, merging."""

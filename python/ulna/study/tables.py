@@ -1,0 +1,107 @@
+"""The tables of a study file, `ulna-study/1`."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from ulna.arm.effects.effects import Extra
+from ulna.artefacts.kinds import ArtefactTable
+from ulna.formats.models import Strict
+from ulna.formats.numbers import Positive
+from ulna.formats.units import Units
+from ulna.study.data import Loss, Method
+from ulna.study.readings.columns import ReadingsEntry
+
+
+class NoiseTable(Strict):
+    """Standard deviations of the readings."""
+
+    encoder: (
+        Annotated[
+            Annotated[Positive, Tag("<all>")] | Annotated[list[Positive], Tag("<each>")], Discriminator(_noise_kind)
+        ]
+        | None
+    ) = None
+    """In the study's angle unit; one number, or one per joint."""
+    seat: Positive | None = None
+    """Of a touch, per coordinate, in the study's length unit."""
+
+
+def _noise_kind(encoder: Any) -> str:
+    return "<each>" if isinstance(encoder, list) else "<all>"
+
+
+class PriorTable(Strict):
+    """What is known of parameters before any reading."""
+
+    value: float | None = None
+    """The arm file's, or the artefact's, where it is not given."""
+    u: Positive
+    """Standard deviation."""
+
+
+def _prior_kind(prior: Any) -> str:
+    return "<table>" if isinstance(prior, dict | PriorTable) else "<deviation>"
+
+
+PriorValue = Annotated[
+    Annotated[Positive, Tag("<deviation>")] | Annotated[PriorTable, Tag("<table>")], Discriminator(_prior_kind)
+]
+
+
+class FittedTable(Strict):
+    """What is fitted."""
+
+    hold: list[str] = Field(default_factory=list)
+    """Not fitted: shell-style patterns over parameter names."""
+    free: list[str] = Field(default_factory=lambda: ["*"])
+    """What may be fitted; hold wins."""
+    loss: Loss = "none"
+    """How residuals count that are far off: by their squares (none), or less."""
+    start: Literal["given", "search"] = "given"
+    """"search": the zero offsets are not known, find them."""
+    extras: list[Extra] = Field(default_factory=list)
+    """Blocks of the model beyond geometry; each is judged by readings left out."""
+    harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
+    """Orders of the encoders' harmonics, where extras ask for them."""
+    judge_extras: bool = True
+    """Whether extras are judged by cross-validation; false saves its time."""
+
+
+class FitTable(FittedTable):
+    """What is fitted, and how."""
+
+    prior: dict[str, PriorValue] = Field(default_factory=dict)
+    """Pattern of parameter names = standard deviation around the arm file's value, or { value, u }, in the study's
+    units."""
+    method: Method = "lm"
+    """"annealing" or "evolution": first a search of a box around the start without derivatives."""
+    budget: Annotated[int, Field(ge=100, le=1_000_000_000)] = 100_000
+    """Most evaluations of the sum of squares in that search."""
+    box_length: Positive | None = None
+    """Half the width of the box for lengths (default 100 mm)."""
+    box_angle: Positive | None = None
+    """For twists (default 0.2 rad)."""
+    box_offset: Positive | None = None
+    """For zero offsets (default 1 rad; with start "search" the whole turn)."""
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] = 0
+    max_iterations: Annotated[int, Field(ge=1, le=1_000_000)] = 200
+    known_length: Positive | None = None
+    """How well lengths are known before any reading (default 1 mm); worse-determined parameters are called weak."""
+    known_angle: Positive | None = None
+    """The same for angles (default 0.01 rad)."""
+
+
+class StudyFile(Strict):
+    """What to fit to what: `ulna-study/1`."""
+
+    format: Literal["ulna-study/1"]
+    arm: str
+    """Path of the arm file, relative to the study file."""
+    units: Units
+    readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
+    artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
+    noise: NoiseTable | None = None
+    fit: FitTable = FitTable()

@@ -1,0 +1,28 @@
+"""What is not in the figures of an uncertainty, in words."""
+
+from __future__ import annotations
+
+from ulna.arm.arm import Arm
+from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.effects.effects import EFFECTS
+from ulna.ground.arrays import F64
+
+
+def left_out(
+    arm: Arm, encoder_rad: F64 | None, seat_mm: float | None, u_temperature_k: float, exact: list[str]
+) -> list[str]:
+    """What nobody stated or the arm's model has not; exact: parameters that count so."""
+    left = []
+    if exact:
+        left.append(f"parameters that the calibration held, which count as exact: {', '.join(exact)}")
+    if encoder_rad is None:
+        left.append("the encoders' noise while measuring: nobody stated it")
+    if seat_mm is None:
+        left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
+    if TEMPERATURE in arm.needs and not u_temperature_k:
+        left.append("the uncertainty of the temperature: nobody stated it")
+    absent = [effect for effect in EFFECTS.values() if effect not in arm.effects]
+    left += [f"{effect.left_out}: the arm's model has none" for effect in absent]
+    left.append("the form and the temperature of what is measured")
+    left.append("errors of the calibration's artefact beyond the u that its study states")
+    return left

@@ -1,0 +1,90 @@
+"""A folder of studies: each is calibrated by itself, what cannot be is told, what is done is kept."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from tests.cli_runs import assert_bad_input, run, strict_json
+
+import ulna
+from ulna.calibration.batch import studies_in
+
+
+@pytest.fixture
+def arms(tmp_path: Path, root: Path) -> Path:
+    """Two good studies, a spoilt one, and files that are no studies."""
+    folder = tmp_path / "arms"
+    for name in ("press", "weld", "spoilt"):
+        (folder / name).mkdir(parents=True)
+        for file in ("study.toml", "platinum.toml", "bars.csv"):
+            shutil.copy(root / "examples" / "platinum" / file, folder / name / file)
+    study = folder / "spoilt" / "study.toml"
+    study.write_text(study.read_text().replace("length =", "lenght ="))
+    return folder
+
+
+def test_a_spoilt_study_stops_no_other(arms: Path, tmp_path: Path) -> None:
+    done = run("batch", arms, "-o", tmp_path / "out")
+    assert done.returncode == 1
+    lines = done.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert sum("converged" in line for line in lines) == 2
+    assert "spoilt/study" in done.stdout
+    assert "lenght" in done.stdout
+    assert not (tmp_path / "out" / "spoilt").exists()
+    found = json.loads((tmp_path / "out" / "batch.json").read_text("utf-8"))
+    assert found["format"] == "ulna-batch/1"
+    assert [(entry["name"], entry["status"]) for entry in found["studies"]] == [
+        ("press/study", "converged"),
+        ("spoilt/study", "refused"),
+        ("weld/study", "converged"),
+    ]
+    alone = ulna.calibrate(ulna.Study.load(arms / "weld" / "study.toml"))
+    result = ulna.Result.load(tmp_path / "out" / "weld" / "study")
+    assert result.arm == alone.arm
+    assert found["studies"][2]["rms_mm"] == pytest.approx(alone.fit.rms_mm, rel=1e-12)
+
+
+def test_what_is_done_is_kept_and_the_rest_is_done(arms: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    ulna.batch(arms, out)
+    before = (out / "press" / "study" / "result.json").read_bytes()
+    study = arms / "spoilt" / "study.toml"
+    study.write_text(study.read_text().replace("lenght =", "length ="))
+    told: list[tuple[str, int, int]] = []
+    again = ulna.batch(arms, out, progress=lambda *report: told.append(report))
+    assert again.converged
+    assert [entry.done_before for entry in again.studies] == [True, False, True]
+    assert told == [("studies", 2, 3), ("studies", 3, 3)]
+    assert (out / "press" / "study" / "result.json").read_bytes() == before
+
+
+def test_another_result_is_not_overwritten(arms: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    ulna.batch(arms, out, only="press/*")
+    study = arms / "press" / "study.toml"
+    study.write_text(study.read_text() + "\n# changed\n")
+    (entry,) = ulna.batch(arms, out, only="press/*").studies
+    assert entry.status == "refused"
+    assert "other files, options or another version" in (entry.message or "")
+    (entry,) = ulna.batch(arms, out, only="press/*", force=True).studies
+    assert (entry.status, entry.done_before) == ("converged", False)
+
+
+def test_which_studies(arms: Path, tmp_path: Path) -> None:
+    assert list(studies_in(arms)) == ["press/study", "spoilt/study", "weld/study"]
+    assert list(studies_in(arms, "*e*/study")) == ["press/study", "weld/study"]
+    assert_bad_input(run("batch", arms, "-o", tmp_path / "o", "--only", "pres/*"), "no study's name matches 'pres/*'")
+    assert_bad_input(run("batch", tmp_path / "none", "-o", tmp_path / "o"), "is no folder")
+    (tmp_path / "empty").mkdir()
+    assert_bad_input(run("batch", tmp_path / "empty", "-o", tmp_path / "o"), "has no study in it")
+    assert not (tmp_path / "o").exists()
+
+
+def test_json_is_what_is_written(arms: Path, tmp_path: Path) -> None:
+    done = run("batch", arms, "-o", tmp_path / "out", "--only", "weld/*", "--json")
+    assert done.returncode == 0
+    assert strict_json(done.stdout) == json.loads((tmp_path / "out" / "batch.json").read_text("utf-8"))
