@@ -239,11 +239,13 @@ fn no_reading_is_counted_twice() {
         let x = problem.parameters();
         let mut streamed = Kept(vec![]);
         Assembly::new(problem, free, &[], &Unwatched).rows(&x, false, &mut streamed).unwrap();
-        assert_eq!(streamed.0.len(), problem.equations(), "{label}");
+        // what only says where a bar stands that is told as a length need not be streamed: five numbers of six
+        let left_out = problem.equations() - streamed.0.len();
+        assert!(left_out.is_multiple_of(5) && left_out <= problem.placement_unknowns(), "{label}: {left_out}");
         let whitened: f64 = problem.whitened(&x).iter().flat_map(|group| &group.norms).map(|norm| norm * norm).sum();
         let cost = cost(problem, free, &x);
         assert!((whitened - cost).abs() < 1e-11 * cost, "{label}: {whitened} {cost}");
-        if problem.noise().is_none() {
+        if problem.noise().is_none() && left_out == 0 {
             let (groups, _) = problem.unweighted(&x);
             let read = groups.iter().flat_map(|group| &group.residuals_mm).map(|r| r.abs()).collect();
             for (a, b) in sorted(streamed.0).iter().zip(sorted(read)) {

@@ -13,6 +13,7 @@ use super::placed::{Group, Observed, Placed, Scene};
 use super::readings::Readings;
 use super::rows::MOST_OWN;
 use super::shape::{Known, Shape, Touched};
+use super::standings::Standings;
 use super::tile::{Directions, TILE, Tile};
 use super::touches::Touches;
 use crate::geometry::Contact;
@@ -40,7 +41,8 @@ pub(super) struct Surface<S, const U: usize> {
 impl<S: Shape<U>, const U: usize> Surface<S, U> {
     /// Readings of a shape with the sizes of its kind, of which those count that are not known exactly.
     pub fn readings(shape: S, sizes: &[f64], statement: &Statement) -> Box<dyn Readings> {
-        let touches = Touches::new(statement.rows, statement.arm.encoders());
+        let standings = Standings::new(statement.rows);
+        let touches = Touches::new(statement.rows, statement.arm.encoders(), standings, |row| row);
         let asked = statement.kind.dimensions.iter().enumerate();
         let (unknown, dimensions) = asked.filter_map(|(k, asked)| Some((k, statement.dimension(asked.name)?))).unzip();
         let measured = statement.rows.measured_mm;
