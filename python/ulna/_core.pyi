@@ -332,7 +332,7 @@ def whitened_rows(problem: Problem, hold: Bool) -> tuple[F64, I64]:
     """What the readings tell of the free parameters at the problem's own arm: (R, free) rows of the Jacobian, weighed for
     the stated noise (mm where none is stated), of which no placement explains anything, and (R,) which standing each is
     of. Standings are counted as they first come in a group, group after group, and the rows come in their order; of
-    readings that stand nowhere, as lengths, each is one. A standing of N equations and e unknowns leaves N - e rows: the
+    readings that stand nowhere, as lengths, or whose place is known, each is one. A standing of N equations and e unknowns leaves N - e rows: the
     same information whichever they are. Priors are left out."""
 
 def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:

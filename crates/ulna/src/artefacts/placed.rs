@@ -108,6 +108,11 @@ pub(super) struct Placed<K, const C: usize> {
 }
 
 impl<K: Observed<C>, const C: usize> Placed<K, C> {
+    /// Whether it has to be placed anywhere.
+    fn stands_freely(&self) -> bool {
+        (0..self.group.touches.standings.len()).any(|k| self.kind.placement_unknowns(&self.group, k) > 0)
+    }
+
     /// Numbers of each touch, in the order that the file has them.
     fn filed(&self, scene: &K::Scene<'_>, each: impl Fn(&K::Scene<'_>, usize, usize) -> f64) -> Vec<f64> {
         let of_standing = |(standing, rows): (usize, &std::ops::Range<usize>)| {
@@ -132,7 +137,7 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
     }
 
     fn standings(&self) -> usize {
-        self.group.touches.standings.len()
+        if self.stands_freely() { self.group.touches.standings.len() } else { self.len() }
     }
 
     fn scale_free(&self) -> bool {
@@ -185,7 +190,7 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         let directions = jacobian.then(|| scene.directions());
         let mut tile = Tile::new(touches, at.model, C);
         let mut eliminated = Eliminated::default();
-        let asked = out.standings_asked();
+        let (asked, freely) = (out.standings_asked(), self.stands_freely());
         let mut standing = 0;
         for start in (0..touches.len()).step_by(TILE) {
             let end = touches.len().min(start + TILE);
@@ -222,7 +227,10 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
                         }
                     }
                 }
-                out.tell(place.used.start + gone..place.used.start + live, |_| standing);
+                // where nothing is to be placed each touch stands for itself
+                let count = rows.len();
+                let own = |k: usize| if freely { standing } else { touches.order[rows.start + (gone + k) % count] };
+                out.tell(place.used.start + gone..place.used.start + live, own);
                 row = rows.end;
                 standing += usize::from(row == whole.end);
             }

@@ -27,7 +27,7 @@ pub trait Readings: Debug + Send + Sync {
     /// Unknowns of all placements.
     fn placement_unknowns(&self) -> usize;
 
-    /// Places in which the artefact stands; rows of a file where nothing stands anywhere.
+    /// Places in which the artefact stands; rows of a file where it stands nowhere or its place is known.
     fn standings(&self) -> usize;
 
     /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.

@@ -168,14 +168,16 @@ impl Eliminated {
         let width = self.order.len();
         fold_into(&mut self.top, self.seen, &mut block.columns, &self.order, used.clone());
         let mut gone = 0;
-        while self.seen < self.pivots && gone < rows {
+        while gone < rows {
+            // an unknown that no row shows yet waits for one that does
+            let shown =
+                |&k: &usize| block.columns.column(self.order[k])[used.clone()].iter().any(|&value| value != 0.0);
+            let Some(next) = (self.seen..self.pivots).find(shown) else { break };
+            self.order.swap(self.seen, next);
+            (0..self.seen).for_each(|row| self.top.swap(row * width + self.seen, row * width + next));
             let order = &self.order[self.seen..];
             let pivot = &mut self.top[self.seen * (width + 1)..(self.seen + 1) * width];
             self.seen += 1;
-            // an unknown that no row shows takes none
-            if block.columns.column(order[0])[used.clone()].iter().all(|&value| value == 0.0) {
-                continue;
-            }
             for (value, &column) in pivot.iter_mut().zip(order) {
                 *value = std::mem::take(&mut block.columns.column_mut(column)[used.start + gone]);
             }

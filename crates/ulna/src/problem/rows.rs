@@ -13,7 +13,7 @@ pub struct WhitenedRows {
     /// Row-major over the free parameters, standing by standing.
     pub rows: Vec<f64>,
     /// Which standing each row is of: counted as they first come in each group of readings, group after group; of readings
-    /// that stand nowhere each is one.
+    /// that stand nowhere, or whose place is known, each is one.
     pub standing: Vec<u32>,
 }
 
