@@ -156,11 +156,6 @@ class Kind(ABC):
         """(N,) what is measured along with each row, in so many placements; None where nothing is."""
         return None
 
-    def moved_by(self, touches: Touches) -> F64:
-        """(T, e) how each residual of touches scattered over it changes with the e unknowns of a standing, in any
-        units."""
-        raise NotImplementedError(f"kind '{self.name}' is not scattered over anything")
-
     def check_simulated(self, table: TouchedTable, key: str) -> None:
         """Whether it can be touched as a simulation file says; key: of its table; raises UlnaInputError."""
         return

@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 
-from ulna.artefacts.kind import Touches
 from ulna.artefacts.round import Round, RoundTable
 from ulna.artefacts.surface import GOLDEN
 from ulna.artefacts.tables import TouchedTable
@@ -42,7 +41,3 @@ class Sphere(Round):
         height = (number + 0.5) / touches
         angle, radius = 2.0 * np.pi * number * GOLDEN, np.sqrt(1.0 - height**2)
         return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height]), np.zeros((touches, 3))
-
-    def moved_by(self, touches: Touches) -> F64:
-        """The centre."""
-        return touches.off
