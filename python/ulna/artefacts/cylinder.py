@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 
-from ulna.artefacts.kind import Touches
 from ulna.artefacts.round import Round, RoundTable
 from ulna.artefacts.surface import GOLDEN
 from ulna.artefacts.tables import TouchedTable
@@ -54,8 +53,3 @@ class Cylinder(Round):
             np.column_stack([np.cos(angle), np.sin(angle), nothing]),
             np.column_stack([nothing, nothing, along_mm]),
         )
-
-    def moved_by(self, touches: Touches) -> F64:
-        """The axis across itself, and two tilts about its middle."""
-        across, along = touches.off[:, :2], touches.centre_mm[:, 2:]
-        return np.column_stack([across, across * along / np.abs(along).max()])

@@ -171,10 +171,6 @@ class Distance(Kind):
         if table.range is not None and not table.range[0] < table.range[1]:
             raise UlnaInputError(f"{key}.range': got {table.range}; expected the least distance first. Swap them.")
 
-    def moved_by(self, touches: Touches) -> F64:
-        """The fixed point."""
-        return touches.off
-
     def check_planned(self, artefact: Artefact, touches: int, label: str) -> None:
         """Fewer rows only say where the point is; offset and scale are as stated. Raises UlnaInputError."""
         fitted = next((each.name for each in self.dimensions(artefact) if each.fitted), None)
