@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::rng;
+use common::{cheng_2011, rng};
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Joint, JointModel, Probe};
+use ulna::arm::Arm;
 use ulna::artefacts::{Noise, Rows, Size, Stated};
 use ulna::fit::calibrate::{Fitted, Options, fit};
 use ulna::kinematics::inverse::{Limits, posture_for_point};
@@ -32,23 +32,9 @@ enum Known {
     Fitted,
 }
 
-/// The assumed truth of Cheng 2011, Table 2, with two probes well off the last axis.
+/// With two probes well off the last axis.
 fn truth() -> Arm {
-    let rows = [
-        [0.0, -1.57, 40.0, 255.0],
-        [2.1, 1.57, -40.0, 0.0],
-        [0.2, -1.57, 30.0, 410.0],
-        [2.0, 1.57, -30.0, 0.0],
-        [0.1, -1.57, 30.0, 400.0],
-        [2.3, 1.57, -30.0, 0.0],
-    ];
-    let joint = |[theta0_rad, alpha_rad, a_mm, d_mm]: [f64; 4]| {
-        let (model, sign) = (JointModel::Dh, 1.0);
-        Joint { theta0_rad, alpha_rad, a_mm, d_mm, beta_rad: 0.0, sign, model }
-    };
-    let probe = |name: &str, tip_mm| Probe { name: name.into(), tip_mm };
-    let probes = vec![probe("bent", [40.0, 0.0, 200.0]), probe("straight", [-15.0, 30.0, 150.0])];
-    Arm::new(rows.map(joint).to_vec(), 1.0, probes).unwrap()
+    cheng_2011(&[("bent", [40.0, 0.0, 200.0]), ("straight", [-15.0, 30.0, 150.0])])
 }
 
 fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def as_certified(readings: Readings) -> Readings:
     """The readings of an artefact that is as its certificate has it: what is uncertain of it is not what a plan can
     mend."""
-    return replace(readings, artefact=replace(readings.artefact, u_mm=0.0, feature_u_mm=None, fitted=False))
+    return replace(readings, artefact=kind_of(readings.artefact).certain(readings.artefact))
 
 
 def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Problem:

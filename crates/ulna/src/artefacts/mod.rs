@@ -10,6 +10,7 @@
 mod at_tips;
 mod checks;
 mod dimension;
+mod figure;
 mod kind;
 mod kinds;
 mod model;
@@ -18,6 +19,7 @@ mod parts;
 mod placed;
 mod readings;
 mod residuals;
+mod round;
 mod rows;
 mod shape;
 mod standings;
