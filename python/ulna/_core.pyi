@@ -329,6 +329,13 @@ def costs(problem: Problem, hold: Bool, parameters: F64) -> F64:
     """(k,) sums of squares at (k, free) sets of the free parameters, placements where they fit best, every reading
     weighing alike: what a search without derivatives asks for."""
 
+def whitened_rows(problem: Problem, hold: Bool) -> tuple[F64, I64]:
+    """What the readings tell of the free parameters at the problem's own arm: (R, free) rows of the Jacobian, weighed
+    for the stated noise (mm where none is stated), of which no placement explains anything, and (R,) which standing
+    each is of. Standings are counted as they first come in a group, group after group; rows come in their order. Of
+    readings that stand nowhere, as lengths, or whose place is known, each is one. A standing of N equations and e
+    unknowns leaves N - e rows: the same information whichever they are. Priors are left out."""
+
 def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:
     """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how fitted parameters follow held ones
     that are themselves uncertain. `held` (h,): indices of held parameters. Units as the parameters'."""

@@ -84,8 +84,8 @@ def test_intervals_from_noise_drawn_by_the_core(kind):
 
 
 def test_a_bar_touched_once_at_each_end_is_calibrated_by_its_lengths():
-    """In Monte Carlo the bar becomes its length rows, but for rounding; what each run states, and how they scatter, is
-    what the fit with placements says."""
+    """The bar is its length rows, but for the millionth of a touch's variance that keeps its weight finite; what each
+    run states, and how they scatter, is what one fit says."""
     truth = table_4()
     bar, rows = exact_bars(truth, 101)
     placed = core_problem(truth, [bar], STATED)
@@ -94,8 +94,10 @@ def test_a_bar_touched_once_at_each_end_is_calibrated_by_its_lengths():
     lengths = _core.recalibrate(
         core_problem(truth, [rows], STATED), nothing_held(truth), core_arm(truth), runs, seed=1, threads=2
     )
-    for own, other in zip(found, lengths, strict=True):
-        np.testing.assert_allclose(own, other, rtol=1e-9)
+    (parameters, u, converged), (others, their_u, they_converged) = found, lengths
+    assert abs((parameters - others) / their_u)[:, DETERMINED].max() < 1e-5
+    np.testing.assert_allclose(u, their_u, rtol=2e-6)
+    np.testing.assert_array_equal(converged, they_converged)
     stated = np.sqrt(np.diag(_core.fit(placed, nothing_held(truth)).covariance))[DETERMINED]
     np.testing.assert_allclose(np.sqrt((found[1][:, DETERMINED] ** 2).mean(axis=0)), stated, rtol=2e-3)
     scatter = found[0][:, DETERMINED].std(axis=0) / stated

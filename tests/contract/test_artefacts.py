@@ -114,6 +114,19 @@ def test_files_come_back_as_they_were(kind: Kind, tmp_path: Path) -> None:
 
 
 @each_kind
+def test_what_is_taken_as_certain_has_no_uncertainty(kind: Kind, tmp_path: Path) -> None:
+    """It is the same artefact, of which nothing is uncertain or fitted."""
+    stated = ulna.simulate(spec(tmp_path, kind)).study.readings[0].artefact
+    certain = kind.certain(stated)
+    before, after = kind.dimensions(stated), kind.dimensions(certain)
+    assert [(each.name, each.value) for each in after] == [(each.name, each.value) for each in before]
+    assert all(each.u == 0.0 and not each.fitted for each in after)
+    assert certain.u_mm == 0.0
+    assert certain.feature_u_mm is None
+    assert certain.features == stated.features
+
+
+@each_kind
 def test_exact_readings_have_no_errors(kind: Kind, tmp_path: Path) -> None:
     """Readings without noise of the true artefact, judged with the true arm: every figure is zero."""
     without_u = spec(tmp_path, kind, 'drawing = "exact"')

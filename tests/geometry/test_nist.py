@@ -1,8 +1,11 @@
 """Least-squares fits against NIST's reference pairs of its Algorithm Testing System (ASME B89.4.10): 30 spheres, 30
-planes, 30 cylinders. Points are given to five decimals, the reference fits of those very points to twenty digits."""
+planes, 30 cylinders. Points are given to five decimals, the reference fits of those very points to twenty digits.
+
+The data are a work of the US government; `crates/ulna/tests/geometry.rs` says where they come from."""
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,18 +16,28 @@ from ulna.geometry.cylinder import fit_cylinder
 from ulna.geometry.plane import fit_plane
 from ulna.geometry.sphere import fit_sphere
 
-pytestmark = pytest.mark.shared_data
-
 PAIRS = range(1, 31)
 #: a hundredth of NIST's own 1e-6 mm for its grades, and hundreds of times above what is reached
 NEAR_MM, NEAR_RAD = 1e-8, 1e-8
 
 
-def pair(shared_data: Path, shape: str, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+@cache
+def pairs(file: Path) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """Name → points (N, 3), and the numbers of the reference fit: the pairs that the core is tested with too."""
+    lines, found = file.read_text(encoding="ascii").splitlines(), {}
+    while lines:
+        name, count, *fit = lines[0].split()
+        points = np.loadtxt(lines[1 : 1 + int(count)])
+        assert len(points) == int(count)
+        found[name] = points, np.array(fit, dtype=np.float64)
+        lines = lines[1 + int(count) :]
+    assert len(found) == len(PAIRS), f"{file} holds other pairs than it did"
+    return found
+
+
+def pair(root: Path, shape: str, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points (N, 3), and the numbers of the reference fit."""
-    folder = shared_data / "nist" / "ats_l2" / shape
-    assert len(list(folder.glob("*.fit"))) == len(PAIRS), f"{folder} holds other pairs than it did"
-    return np.loadtxt(folder / f"{name}.ds", skiprows=1), np.loadtxt(folder / f"{name}.fit")
+    return pairs(root / "crates" / "ulna" / "tests" / "data" / f"nist_{shape.lower()}.txt")[name]
 
 
 def apart_rad(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
@@ -33,24 +46,24 @@ def apart_rad(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
 
 
 @pytest.mark.parametrize("number", PAIRS)
-def test_spheres(shared_data: Path, number: int) -> None:
-    points, reference = pair(shared_data, "Sphere", f"sph{number}")
+def test_spheres(root: Path, number: int) -> None:
+    points, reference = pair(root, "Sphere", f"sph{number}")
     sphere = fit_sphere(points)
     assert np.linalg.norm(sphere.centre_mm - reference[:3]) < NEAR_MM
     assert abs(2.0 * sphere.radius_mm - reference[3]) < NEAR_MM
 
 
 @pytest.mark.parametrize("number", PAIRS)
-def test_planes(shared_data: Path, number: int) -> None:
-    points, reference = pair(shared_data, "Plane", f"pla{number}")
+def test_planes(root: Path, number: int) -> None:
+    points, reference = pair(root, "Plane", f"pla{number}")
     plane = fit_plane(points)
     assert apart_rad(plane.normal, reference[3:]) < NEAR_RAD
     assert abs((plane.point_mm - reference[:3]) @ plane.normal) < NEAR_MM
 
 
 @pytest.mark.parametrize("number", PAIRS)
-def test_cylinders(shared_data: Path, number: int) -> None:
-    points, reference = pair(shared_data, "Cylinder", f"cyl{number}")
+def test_cylinders(root: Path, number: int) -> None:
+    points, reference = pair(root, "Cylinder", f"cyl{number}")
     cylinder = fit_cylinder(points)
     axis = reference[3:6] / np.linalg.norm(reference[3:6])
     assert apart_rad(cylinder.direction, axis) < NEAR_RAD

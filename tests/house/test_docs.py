@@ -24,6 +24,7 @@ def test_the_comparison_sees_what_it_should():
     assert same("one line", "one line\nanother") != []
 
 
+@pytest.mark.timeout(900)  # it runs all that the pages show
 def test_outputs_of_commands(root, tools):
     printed = tools["docs_output"].command_outputs()
     shown = {path.name for path in (root / "docs" / "output").glob("*.txt")}
@@ -37,6 +38,7 @@ def test_messages_on_the_errors_page(root, tools):
     assert same(shown, tools["docs_errors"].error_page()) == []
 
 
+@pytest.mark.timeout(900)  # it runs all that the pages show
 def test_tables_of_real_readings(root, tools, shared_data):
     for name, table in tools["docs_real_readings"].real_readings_tables().items():
         assert same((root / "docs" / "output" / f"real-{name}.md").read_text(encoding="utf-8"), table) == [], name

@@ -20,9 +20,9 @@ from ulna.artefacts.distance import Instrument
 from ulna.artefacts.readings import Readings
 from ulna.planning.candidates import draw
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
+from ulna.planning.measurements import problem_of
 from ulna.planning.order import nearest_first
 from ulna.planning.refusals import free_parameters
-from ulna.planning.trial import problem_of
 from ulna.simulation.mover import Mover
 from ulna.study.data import Noise
 from ulna.study.study import Study
@@ -89,6 +89,29 @@ def test_the_rows_of_measurements_say_what_the_fit_says_of_them(artefact: Artefa
     assert len(steady) >= 10
     own = np.sqrt(np.diag(covariance))[steady]
     assert own == pytest.approx(np.sqrt(np.diag(fitted.covariance))[steady], rel=1e-5)
+
+
+@pytest.mark.parametrize(("artefact", "touches"), [(BAR, 1), (BAR, 3), (SEAT, 4), (PLATE, 1), (PLATE, 2), (FIXED, 2)])
+def test_each_measurement_tells_what_its_placement_leaves(artefact: Artefact, touches: int) -> None:
+    """Measurement by measurement: W J less its projection on the columns of shifts and turns."""
+    arm, asked = limited(), spec(artefact, touches=touches, candidates=400)
+    free = np.arange(5, 27)
+    mover = Mover(arm, np.array([joint.limits_rad for joint in arm.joints]))
+    taken = draw(asked, mover, 0, np.random.default_rng(3)).select(np.arange(0, 400, 20))
+    poses = taken.poses(np.arange(len(taken)))
+    found = candidate_rows(asked, arm, 0, free, taken)
+    for q_rad, rows in zip(poses.reshape(len(taken), -1, 7), found, strict=True):
+        by_encoder = arm.core.encoder_jacobian(np.ascontiguousarray(q_rad), 0) * 5e-6
+        w = np.linalg.inv(np.linalg.cholesky(by_encoder @ by_encoder.transpose(0, 2, 1) + 0.008**2 * np.eye(3)))
+        wj = (w @ arm.core.jacobian(np.ascontiguousarray(q_rad), 0)[:, :, free]).reshape(-1, len(free))
+        at_mm = arm.tip(q_rad) - arm.tip(q_rad).mean(axis=0)
+        turns = np.stack([np.cross(axis, at_mm) for axis in np.eye(3)], axis=2)
+        own = (w @ np.concatenate([np.broadcast_to(np.eye(3), turns.shape), turns / 100.0], axis=2)).reshape(-1, 6)
+        left = wj if artefact.frame == "arm" else wj - own @ np.linalg.pinv(own, rcond=1e-8) @ wj
+        expected = left.T @ left
+        # where encoders have noise the core adds a millionth to a touch's variance
+        scale = np.sqrt(np.outer(np.diag(wj.T @ wj), np.diag(wj.T @ wj)))
+        assert (np.abs(rows.T @ rows - expected) < 1e-5 * scale + 1e-12).all()
 
 
 def test_readings_that_were_taken_count_as_the_candidates_they_are() -> None:

@@ -1,4 +1,4 @@
-//! `ulna._core.fit`, `identify`, `costs`, `held_sensitivity` and `recalibrate`.
+//! `ulna._core.fit`, `identify`, `costs`, `whitened_rows`, `held_sensitivity` and `recalibrate`.
 
 use crate::arm::Arm;
 use crate::arrays::{array1, array2, indices, rows, slice};
@@ -120,6 +120,21 @@ pub fn identify(
     let inner = &mut problem.inner;
     let inner = watched(py, None, |watch| calibrate::identify(inner, &free, known, watch))?;
     Ok(Identifiability { inner })
+}
+
+/// Rows of the whitened Jacobian of which a placement explains nothing.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn whitened_rows<'py>(
+    py: Python<'py>,
+    mut problem: PyRefMut<'_, Problem>,
+    hold: PyReadonlyArray1<'_, bool>,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>)> {
+    let free = free(&problem, &hold)?;
+    let inner = &mut problem.inner;
+    let found = watched(py, None, |watch| ulna::problem::whitened_rows(inner, &free, watch))?;
+    let standing = PyArray1::from_iter(py, found.standing.iter().map(|&number| i64::from(number)));
+    Ok((array2(py, found.rows, free.len())?, standing))
 }
 
 /// How the free parameters follow held ones.

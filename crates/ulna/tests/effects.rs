@@ -153,13 +153,18 @@ fn two_touches_of_a_bar_approached_differently_are_a_length() {
     problem.add("points", &bar, &rows).unwrap();
     let model = Model::new(&arm);
     let group = &problem.groups()[0];
-    for lengths in [group.lengths_alone().unwrap(), group.as_lengths().unwrap()] {
-        assert_eq!(lengths.len(), 10);
-        let residuals = lengths.unweighted(At { model: &model, dimensions: &[] }).residuals_mm;
-        for (k, residual) in residuals.iter().enumerate() {
-            let apart = (tip(&arm, 0, &told, &q_rad, 2 * k) - tip(&arm, 0, &told, &q_rad, 2 * k + 1)).norm();
-            assert!((residual - (apart - 443.0)).abs() < 1e-9, "{k}");
-        }
+    let at = At { model: &model, dimensions: &[] };
+    let apart_mm = |k: usize| (tip(&arm, 0, &told, &q_rad, 2 * k) - tip(&arm, 0, &told, &q_rad, 2 * k + 1)).norm();
+    let lengths = group.as_lengths().unwrap();
+    assert_eq!(lengths.len(), 10);
+    for (k, residual) in lengths.unweighted(at).residuals_mm.iter().enumerate() {
+        assert!((residual - (apart_mm(k) - 443.0)).abs() < 1e-9, "{k}");
+    }
+    // as the touches that they are, each end has half of it
+    assert_eq!(group.len(), 20);
+    for (row, residual) in group.unweighted(at).residuals_mm.chunks_exact(3).enumerate() {
+        let off_mm = 0.5 * (apart_mm(row / 2) - 443.0).abs();
+        assert!((nalgebra::Vector3::from_column_slice(residual).norm() - off_mm).abs() < 1e-9, "{row}");
     }
 }
 

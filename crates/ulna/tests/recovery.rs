@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::rng;
+use common::{cheng_2011, rng};
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Joint, JointModel, Probe, Unit};
+use ulna::arm::{Arm, Unit};
 use ulna::artefacts::{KINDS, Noise, Rows, Size, Stated};
 use ulna::fit::calibrate::{Options, fit};
 use ulna::fit::monte_carlo::{Repeat, recalibrate};
@@ -32,21 +32,9 @@ const TAKEN: &[(&str, &str, Taking)] = &[
 
 const BALL_MM: f64 = 6.0;
 
-/// The assumed truth of Cheng 2011, Table 2, with a probe well off the last axis.
+/// With a probe well off the last axis.
 fn truth() -> Arm {
-    let rows = [
-        [0.0, -1.57, 40.0, 255.0],
-        [2.1, 1.57, -40.0, 0.0],
-        [0.2, -1.57, 30.0, 410.0],
-        [2.0, 1.57, -30.0, 0.0],
-        [0.1, -1.57, 30.0, 400.0],
-        [2.3, 1.57, -30.0, 0.0],
-    ];
-    let joint = |[theta0_rad, alpha_rad, a_mm, d_mm]: [f64; 4]| {
-        let (model, sign) = (JointModel::Dh, 1.0);
-        Joint { theta0_rad, alpha_rad, a_mm, d_mm, beta_rad: 0.0, sign, model }
-    };
-    Arm::new(rows.map(joint).to_vec(), 1.0, vec![Probe { name: "bent".into(), tip_mm: [40.0, 0.0, 200.0] }]).unwrap()
+    cheng_2011(&[("bent", [40.0, 0.0, 200.0])])
 }
 
 /// `joint.3.d`, by which all others are measured where no reading knows a length.

@@ -22,7 +22,7 @@ from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
 FEWEST = 5
-"""Rows that leave something to judge: one more than a point has coordinates, and one for luck of position."""
+"""Rows that leave something to judge: four tell a point from its mirror image, one more is left."""
 
 MOST_STEPS = 30
 STILL = 1e-13
@@ -103,6 +103,11 @@ class Distance(Kind):
             Dimension("scale", own.scale, own.u_scale, own.fit_scale, "1"),
         ]
 
+    def certain(self, artefact: Artefact) -> Artefact:
+        """With the offset and the scale that are stated."""
+        own = instrument(artefact)
+        return replace(artefact, own=Instrument(offset_mm=own.offset_mm, scale=own.scale))
+
     def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """With what was measured in each row."""
         stated = [(each.name, each.value, each.u, each.fitted) for each in self.dimensions(group.artefact)]
@@ -121,23 +126,22 @@ class Distance(Kind):
         fitted is the one that fits best here."""
         assert readings.length_mm is not None
         own, read_mm = instrument(readings.artefact), readings.length_mm
-        placements = [np.flatnonzero(tips.code == number) for number in range(int(tips.code.max()) + 1)]
         stands: list[_Stand] = []
         codes: list[I64] = []
-        for rows in placements:
-            try:
-                stand = _Stand(tips.first_mm[rows], read_mm[rows])
-                stand.errors_mm(own.offset_mm, own.scale)
-            except UlnaInputError:  # tips on a line, say: no point can be told
-                continue
-            if len(rows) >= FEWEST:
+        for number in range(int(tips.code.max()) + 1):
+            rows = np.flatnonzero(tips.code == number)
+            stand = _Stand(tips.first_mm[rows], read_mm[rows])
+            if len(rows) >= FEWEST and stand.tells(own):
                 stands.append(stand)
                 codes.append(tips.code[rows])
         if not stands:
             return {}
-        offset_mm, scale = _as_they_fit(own, stands)
-        errors_mm = np.concatenate([stand.errors_mm(offset_mm, scale)[0] for stand in stands])
-        return {"distance_error": Errors(errors_mm, np.concatenate(codes))}
+        try:
+            offset_mm, scale = _as_they_fit(own, stands)
+            errors = [stand.errors_mm(offset_mm, scale)[0] for stand in stands]
+        except UlnaInputError:  # readings that are no distances from anywhere: there is no offset or scale to find
+            return {}
+        return {"distance_error": Errors(np.concatenate(errors), np.concatenate(codes))}
 
     def drawn(self, stated: Artefact, rng: np.random.Generator) -> Artefact:
         """The instrument's own offset and scale."""
@@ -170,10 +174,6 @@ class Distance(Kind):
         assert isinstance(table, SimulatedDistance)
         if table.range is not None and not table.range[0] < table.range[1]:
             raise UlnaInputError(f"{key}.range': got {table.range}; expected the least distance first. Swap them.")
-
-    def moved_by(self, touches: Touches) -> F64:
-        """The fixed point."""
-        return touches.off
 
     def check_planned(self, artefact: Artefact, touches: int, label: str) -> None:
         """Fewer rows only say where the point is; offset and scale are as stated. Raises UlnaInputError."""
@@ -209,6 +209,14 @@ class _Stand:
 
     tips_mm: F64
     read_mm: F64
+
+    def tells(self, own: Instrument) -> bool:
+        """Whether there is a point: not of tips on a line, say."""
+        try:
+            self.errors_mm(own.offset_mm, own.scale)
+        except UlnaInputError:
+            return False
+        return True
 
     def errors_mm(self, offset_mm: float, scale: float) -> tuple[F64, F64]:
         """(N,) errors against the point that fits best, and (N, 3) the directions in which the distances grow."""

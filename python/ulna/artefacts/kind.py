@@ -125,6 +125,10 @@ class Kind(ABC):
     def dimensions(self, artefact: Artefact) -> list[Dimension]:
         """What a certificate states of it as single numbers."""
 
+    def certain(self, artefact: Artefact) -> Artefact:
+        """The artefact as if its certificate were exact: nothing of it is uncertain, nothing is fitted."""
+        return replace(artefact, u_mm=0.0, feature_u_mm=None, fitted=False)
+
     @abstractmethod
     def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """Give the readings to the core. balls_mm (P,) of the arm's probes; conditions: of each pose of a row."""
@@ -155,11 +159,6 @@ class Kind(ABC):
     ) -> F64 | None:
         """(N,) what is measured along with each row, in so many placements; None where nothing is."""
         return None
-
-    def moved_by(self, touches: Touches) -> F64:
-        """(T, e) how each residual of touches scattered over it changes with the e unknowns of a standing, in any
-        units."""
-        raise NotImplementedError(f"kind '{self.name}' is not scattered over anything")
 
     def check_simulated(self, table: TouchedTable, key: str) -> None:
         """Whether it can be touched as a simulation file says; key: of its table; raises UlnaInputError."""

@@ -82,11 +82,6 @@ class Plane(Surface):
         centre_mm = np.column_stack([width_mm * x, height_mm * y, 0.5 * how.balls_mm[probe]])
         return Touches(centre_mm, np.tile([0.0, 0.0, 1.0], (len(probe), 1)), probe, np.zeros(len(probe), np.int64))
 
-    def moved_by(self, touches: Touches) -> F64:
-        """How far away it is, and two tilts."""
-        across = touches.centre_mm[:, :2]
-        return np.column_stack([np.ones(len(across)), across / np.abs(across).max()])
-
 
 def form_mm(centre_mm: F64, ball_mm: F64) -> float:
     """Largest minus smallest distance from the least-squares plane of ball centres (N, 3) of diameters (N,), mm.

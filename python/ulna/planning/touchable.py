@@ -28,8 +28,6 @@ class Touchable:
     """t; 1 on a surface."""
     outward: F64 | None = None
     """(K, 3) away from a surface, in the artefact's own frame; None for features."""
-    unknowns: F64 | None = None
-    """(K, e) what moves a surface's residuals beside the arm: its centre, or its plane."""
 
     @property
     def pairs(self) -> bool:
@@ -56,6 +54,5 @@ def touchable(spec: PlanSpec, arm: Arm, probe: int) -> Touchable:
         return Touchable(at_mm, tuple(artefact.features), spec.touches)
     spread = spread_of(spec, arm, probe)
     at_mm, outward = spread.centre_mm, spread.off
-    unknowns = kind_of(artefact).moved_by(spread)
     names = tuple(str(number + 1) for number in range(len(at_mm)))
-    return Touchable(at_mm, names, 1, outward, unknowns)
+    return Touchable(at_mm, names, 1, outward)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,12 +11,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.artefacts.kinds import kind_of
-from ulna.artefacts.labels import Labels
-from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64, Arrays, Bool, Progress
+from ulna.planning.measurements import problem_of
 from ulna.planning.spec import PlanSpec
-from ulna.planning.touchable import spread_of
 from ulna.work.kept import each_once, sha256_of
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Workers
@@ -45,40 +42,6 @@ class Trial:
     def gain(self) -> float:
         """By which part the errors are smaller."""
         return 1.0 - self.planned_mm / self.random_mm
-
-
-def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Problem:
-    """The core's problem of measurements (count, K, t, n), each a placement of its own, readings exact."""
-    import ulna._core as _core
-
-    count, features, touches, n = q_rad.shape
-    per = features * touches
-    problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
-    kind = kind_of(spec.artefact)
-    each = np.tile(np.repeat(np.arange(features), touches), count)
-    readings = Readings(
-        # as its certificate has it: what is uncertain of it is not what a plan can mend
-        artefact=replace(spec.artefact, u_mm=0.0, feature_u_mm=None, fitted=False),
-        q_rad=np.ascontiguousarray(q_rad.reshape(-1, n)),
-        p_rad=None,
-        length_mm=_measured_mm(spec, arm, probe, count),
-        probe=np.full(count * per, probe, dtype=np.int64),
-        feature=each if kind.named else np.zeros_like(each),
-        placement=Labels(np.repeat(np.arange(count), per), [str(number) for number in range(count)]),
-        row=np.arange(1, count * per + 1),
-        file=np.zeros(count * per, dtype=np.int64),
-    )
-    balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
-    kind.enter(problem, readings, balls_mm, [arm.conditions(len(readings))])
-    return problem
-
-
-def _measured_mm(spec: PlanSpec, arm: Arm, probe: int, count: int) -> F64 | None:
-    """What is measured along with each row of so many measurements, exactly; None where nothing is."""
-    kind, artefact = kind_of(spec.artefact), spec.artefact
-    if kind.measured_column is None or not kind.scattered:
-        return None
-    return kind.measured_mm(artefact, artefact, spread_of(spec, arm, probe), count, np.random.default_rng(0))
 
 
 def carry_out(

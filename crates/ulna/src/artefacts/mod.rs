@@ -7,17 +7,22 @@
 //! To add a kind: one file in `kinds/` with its formula, what it needs and how its readings are made; its line and its row
 //! in `kinds.rs`; its entry in `tests/artefact_contract.rs`, which fails in words until it is there.
 
+mod at_tips;
 mod checks;
 mod dimension;
+mod figure;
 mod kind;
 mod kinds;
 mod model;
 mod noise;
+mod parts;
 mod placed;
 mod readings;
 mod residuals;
+mod round;
 mod rows;
 mod shape;
+mod standings;
 mod stated;
 mod surface;
 mod tile;

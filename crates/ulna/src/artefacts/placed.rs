@@ -2,7 +2,7 @@
 
 use super::dimension::{Dimension, Unknowns};
 use super::model::At;
-use super::noise::{Noise, Weighing, normal};
+use super::noise::{Noise, Weighing};
 use super::readings::Readings;
 use super::residuals::{Unweighted, Whitened, shared};
 use super::rows::{Eliminated, Layout, MOST_OWN, Place};
@@ -66,11 +66,6 @@ pub(super) trait Observed<const C: usize>: std::fmt::Debug + Clone + Send + Sync
     fn as_lengths(&self, _: &Group) -> Option<Box<dyn Readings>> {
         None
     }
-
-    /// See [`Readings::lengths_alone`].
-    fn lengths_alone(&self, _: &Group) -> Option<Box<dyn Readings>> {
-        None
-    }
 }
 
 /// Touches where the arm and the artefact are.
@@ -113,6 +108,11 @@ pub(super) struct Placed<K, const C: usize> {
 }
 
 impl<K: Observed<C>, const C: usize> Placed<K, C> {
+    /// Whether it has to be placed anywhere.
+    fn stands_freely(&self) -> bool {
+        (0..self.group.touches.standings.len()).any(|k| self.kind.placement_unknowns(&self.group, k) > 0)
+    }
+
     /// Numbers of each touch, in the order that the file has them.
     fn filed(&self, scene: &K::Scene<'_>, each: impl Fn(&K::Scene<'_>, usize, usize) -> f64) -> Vec<f64> {
         let of_standing = |(standing, rows): (usize, &std::ops::Range<usize>)| {
@@ -134,6 +134,10 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
 
     fn placement_unknowns(&self) -> usize {
         (0..self.group.touches.standings.len()).map(|k| self.kind.placement_unknowns(&self.group, k)).sum()
+    }
+
+    fn standings(&self) -> usize {
+        if self.stands_freely() { self.group.touches.standings.len() } else { self.len() }
     }
 
     fn scale_free(&self) -> bool {
@@ -186,6 +190,7 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         let directions = jacobian.then(|| scene.directions());
         let mut tile = Tile::new(touches, at.model, C);
         let mut eliminated = Eliminated::default();
+        let (asked, freely) = (out.standings_asked(), self.stands_freely());
         let mut standing = 0;
         for start in (0..touches.len()).step_by(TILE) {
             let end = touches.len().min(start + TILE);
@@ -197,6 +202,7 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
                 let whole = &touches.standings[standing];
                 let rows = row..end.min(whole.end);
                 let place = Place::reserve(out, &tile, start, rows.clone(), &touches.probe, C)?;
+                let (live, mut gone) = (C * rows.len(), 0);
                 let block = &mut out.block;
                 place.write(block, layout.residual, |row| scene.residual(standing, row));
                 if jacobian {
@@ -214,9 +220,17 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
                             eliminated.begin(own, block);
                         }
                         place.write_own(block, own, |row, own| scene.by_standing(standing, row, own));
-                        eliminated.fold(block, place.used);
+                        if asked {
+                            gone = eliminated.take_out(block, place.used.clone(), live);
+                        } else {
+                            eliminated.fold(block, place.used.clone());
+                        }
                     }
                 }
+                // where nothing is to be placed each touch stands for itself
+                let count = rows.len();
+                let own = |k: usize| if freely { standing } else { touches.order[rows.start + (gone + k) % count] };
+                out.tell(place.used.start + gone..place.used.start + live, own);
                 row = rows.end;
                 standing += usize::from(row == whole.end);
             }
@@ -264,13 +278,16 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         self.group.touches.poses.seen()
     }
 
-    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+    fn taken_anew(
+        &self,
+        truth: At,
+        calibrated: &[f64],
+        noise: &Noise,
+        rng: &mut Xoshiro256PlusPlus,
+    ) -> Box<dyn Readings> {
         let mut drawn = self.clone();
-        // the artefact is what it is; its calibration is drawn anew
-        let stated = self.group.dimensions.iter().zip(truth.dimensions);
-        let calibrated: Vec<f64> = stated.map(|(dimension, value)| value + dimension.u * normal(rng)).collect();
-        drawn.kind.recalibrate(&self.group, truth.dimensions, &calibrated);
-        drawn.group.dimensions.iter_mut().zip(calibrated).for_each(|(dimension, value)| dimension.value = value);
+        drawn.kind.recalibrate(&self.group, truth.dimensions, calibrated);
+        drawn.group.dimensions.iter_mut().zip(calibrated).for_each(|(dimension, &value)| dimension.value = value);
         let scene = self.kind.scene(&self.group, truth);
         let mut off = Vec::with_capacity(self.len());
         for (standing, rows) in self.group.touches.standings.iter().enumerate() {
@@ -291,10 +308,6 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
 
     fn as_lengths(&self) -> Option<Box<dyn Readings>> {
         self.kind.as_lengths(&self.group)
-    }
-
-    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
-        self.kind.lengths_alone(&self.group)
     }
 
     fn boxed(&self) -> Box<dyn Readings> {

@@ -2,7 +2,7 @@
 
 use super::dimension::{Dimension, Unknowns};
 use super::model::At;
-use super::noise::{Noise, Weighing};
+use super::noise::{Noise, Weighing, normal};
 use super::residuals::{Unweighted, Whitened};
 use super::writer::Writer;
 use crate::arm::Seen;
@@ -26,6 +26,9 @@ pub trait Readings: Debug + Send + Sync {
 
     /// Unknowns of all placements.
     fn placement_unknowns(&self) -> usize;
+
+    /// Places in which the artefact stands; rows of a file where it stands nowhere or its place is known.
+    fn standings(&self) -> usize;
 
     /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.
     fn scale_free(&self) -> bool;
@@ -56,6 +59,11 @@ pub trait Readings: Debug + Send + Sync {
     /// Weighs each reading, in the order they were given, by a further factor: what a loss makes of it. None: by one.
     fn discount(&mut self, factors: Option<&[f64]>);
 
+    /// Whether some reading weighs its directions differently where encoders have noise.
+    fn weighs_directions(&self) -> bool {
+        self.equations() > self.len()
+    }
+
     /// Sum of the squared weights of all readings, 1/mm².
     fn weight_squared_sum(&self) -> f64;
 
@@ -78,7 +86,21 @@ pub trait Readings: Debug + Send + Sync {
     fn seen(&self) -> Seen;
 
     /// The same readings, exact at these parameters, with new noise, and dimensions calibrated anew.
-    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;
+    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        let stated = self.dimensions().iter().zip(truth.dimensions);
+        let calibrated: Vec<f64> = stated.map(|(dimension, value)| value + dimension.u * normal(rng)).collect();
+        self.taken_anew(truth, &calibrated, noise, rng)
+    }
+
+    /// The same readings, exact at these parameters, with new noise, of an artefact whose dimensions are what they are and
+    /// were calibrated as `calibrated`.
+    fn taken_anew(
+        &self,
+        truth: At,
+        calibrated: &[f64],
+        noise: &Noise,
+        rng: &mut Xoshiro256PlusPlus,
+    ) -> Box<dyn Readings>;
 
     /// About `most` of these readings, evenly chosen, for a quick look.
     fn thinned(&self, most: usize) -> Box<dyn Readings>;
@@ -86,12 +108,6 @@ pub trait Readings: Debug + Send + Sync {
     /// The same knowledge, or nearly, as lengths between pairs of touches, where it can be told so: nothing has to be placed
     /// then, and a search finds its way more often.
     fn as_lengths(&self) -> Option<Box<dyn Readings>> {
-        None
-    }
-
-    /// The same knowledge told by lengths alone, where that is all there is: of an artefact of two features, touched once
-    /// each wherever it stands, five of six coordinates say where that is. Same dimensions; weights are to be found anew.
-    fn lengths_alone(&self) -> Option<Box<dyn Readings>> {
         None
     }
 

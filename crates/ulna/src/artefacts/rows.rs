@@ -146,18 +146,45 @@ pub(super) struct Eliminated {
     top: Vec<f64>,
     order: Vec<usize>,
     pivots: usize,
+    /// pivots that took a row, where rows are taken
+    seen: usize,
 }
 
 impl Eliminated {
     /// Begins a standing of so many unknowns, whose columns stand behind the residual.
     pub fn begin(&mut self, unknowns: usize, block: &RowBlock) {
-        self.pivots = unknowns;
+        (self.pivots, self.seen) = (unknowns, 0);
         self.order.clear();
         self.order.extend(block.residual + 1..block.residual + 1 + unknowns);
         self.order.extend(block.targets.iter().map(|&(column, _)| column));
         self.order.push(block.residual);
         self.top.clear();
         self.top.resize(unknowns * self.order.len(), 0.0);
+    }
+
+    /// The same, and the unknowns take a row each with them, the first of these that are left: it comes out as zero. Returns
+    /// how many rows went.
+    pub fn take_out(&mut self, block: &mut RowBlock, used: Range<usize>, rows: usize) -> usize {
+        let width = self.order.len();
+        fold_into(&mut self.top, self.seen, &mut block.columns, &self.order, used.clone());
+        let mut gone = 0;
+        while gone < rows {
+            // an unknown that no row shows yet waits for one that does
+            let shown =
+                |&k: &usize| block.columns.column(self.order[k])[used.clone()].iter().any(|&value| value != 0.0);
+            let Some(next) = (self.seen..self.pivots).find(shown) else { break };
+            self.order.swap(self.seen, next);
+            (0..self.seen).for_each(|row| self.top.swap(row * width + self.seen, row * width + next));
+            let order = &self.order[self.seen..];
+            let pivot = &mut self.top[self.seen * (width + 1)..(self.seen + 1) * width];
+            self.seen += 1;
+            for (value, &column) in pivot.iter_mut().zip(order) {
+                *value = std::mem::take(&mut block.columns.column_mut(column)[used.start + gone]);
+            }
+            gone += 1;
+            fold_into(pivot, 1, &mut block.columns, order, used.clone());
+        }
+        gone
     }
 
     /// Takes what the standing's unknowns explain out of some rows.

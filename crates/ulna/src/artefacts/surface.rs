@@ -6,13 +6,15 @@
 //!
 //! with n the direction in which the distance grows, and Σ the covariance of the tip for the stated noise.
 
+use super::figure::{Figure, Touched};
 use super::kind::Statement;
 use super::model::At;
 use super::noise::{Noise, Weighing};
 use super::placed::{Group, Observed, Placed, Scene};
 use super::readings::Readings;
 use super::rows::MOST_OWN;
-use super::shape::{Known, Shape, Touched};
+use super::shape::{Known, Shape};
+use super::standings::Standings;
 use super::tile::{Directions, TILE, Tile};
 use super::touches::Touches;
 use crate::geometry::Contact;
@@ -40,7 +42,8 @@ pub(super) struct Surface<S, const U: usize> {
 impl<S: Shape<U>, const U: usize> Surface<S, U> {
     /// Readings of a shape with the sizes of its kind, of which those count that are not known exactly.
     pub fn readings(shape: S, sizes: &[f64], statement: &Statement) -> Box<dyn Readings> {
-        let touches = Touches::new(statement.rows, statement.arm.encoders());
+        let standings = Standings::new(statement.rows);
+        let touches = Touches::new(statement.rows, statement.arm.encoders(), standings, |row| row);
         let asked = statement.kind.dimensions.iter().enumerate();
         let (unknown, dimensions) = asked.filter_map(|(k, asked)| Some((k, statement.dimension(asked.name)?))).unzip();
         let measured = statement.rows.measured_mm;
@@ -92,8 +95,8 @@ impl<S: Shape<U>, const U: usize> Observed<1> for Surface<S, U> {
         for rows in &touches.standings {
             contacts.clear();
             contacts.extend(rows.clone().map(|row| self.contact(touches, &p, &sizes, row)));
-            let standing = self.shape.place(&contacts);
-            touched.extend(contacts.iter().map(|contact| self.shape.touched(&standing, contact)));
+            let figure = S::Figure::nearest(&contacts);
+            touched.extend(contacts.iter().map(|contact| figure.touched(contact)));
         }
         Seen { surface: self, touched, factor: self.factor.as_deref() }
     }

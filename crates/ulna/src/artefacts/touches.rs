@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::noise::normal;
+use super::standings::Standings;
 use super::stated::Rows;
 use crate::kinematics::batch::tips_mm;
 use crate::kinematics::{Poses, Sample};
@@ -25,25 +26,15 @@ pub(super) struct Touches {
 }
 
 impl Touches {
-    /// Sorted by standing (one for all rows where no placement is told), and by feature in each.
-    pub fn new(rows: &Rows, encoders: usize) -> Touches {
-        let count = rows.probe.len();
-        let feature = |row: usize| rows.feature.map_or(0, |feature| feature[row]);
-        let mut first_seen = std::collections::HashMap::new();
-        let mut standing_of = |row: usize| {
-            let next = first_seen.len();
-            *first_seen.entry(rows.placement.map_or(0, |placement| placement[row])).or_insert(next)
-        };
-        let standing: Vec<usize> = (0..count).map(&mut standing_of).collect();
-        let mut order: Vec<usize> = (0..count).collect();
-        order.sort_by_key(|&r| (standing[r], feature(r), r));
-        let of_standing: Vec<usize> = order.iter().map(|&r| standing[r]).collect();
+    /// Rows of a file by standing; `number` says what each is called here.
+    pub fn new(rows: &Rows, encoders: usize, standings: Standings, number: impl Fn(usize) -> usize) -> Touches {
+        let order = &standings.order;
         Touches {
-            poses: Poses::gathered(rows.poses, encoders, &order),
+            poses: Poses::gathered(rows.poses, encoders, order),
             probe: order.iter().map(|&r| rows.probe[r]).collect(),
-            feature: order.iter().map(|&r| feature(r)).collect(),
-            standings: equal_runs(&of_standing),
-            order,
+            feature: order.iter().map(|&r| rows.feature.map_or(0, |feature| feature[r])).collect(),
+            order: order.iter().map(|&r| number(r)).collect(),
+            standings: standings.each,
             offset_mm: None,
         }
     }
@@ -138,17 +129,4 @@ impl Touches {
         self.order.iter().zip(values).for_each(|(&row, value)| filed[row] = value);
         filed
     }
-}
-
-/// Maximal runs of equal values.
-fn equal_runs(values: &[usize]) -> Vec<Range<usize>> {
-    let mut runs = Vec::new();
-    let mut start = 0;
-    for end in 1..=values.len() {
-        if end == values.len() || values[end] != values[start] {
-            runs.push(start..end);
-            start = end;
-        }
-    }
-    runs
 }

@@ -49,19 +49,18 @@ pub struct Repeat<'a> {
 
 /// Calibrates `runs` times on readings that are exact for `truth` plus newly drawn noise. Each fit starts at the truth:
 /// what is asked is where calibrations end, not whether they find the way. What the readings do not determine stays as
-/// the problem's own arm has it. A bar touched once at each end wherever it stands is calibrated by its lengths: the same
-/// to first order in the noise, in a twentieth of the time.
+/// the problem's own arm has it.
 ///
 /// # Errors
 /// No stated noise, or interrupted.
 pub fn recalibrate(problem: &Problem, free: &[usize], repeat: &Repeat, monitor: &dyn Monitor) -> Result<Vec<Run>> {
     let noise = problem.noise().ok_or(Error::NoNoise)?;
-    // a loss judges touches, not lengths
-    let mut problem = if problem.loss().is_some() { problem.clone() } else { problem.lengths_alone() };
+    let mut problem = problem.clone();
     problem.set_arm(based_on(&problem, repeat.truth)?);
     let truth = truth_of(&problem, repeat.truth)?;
     prepare(&mut problem);
-    problem.weigh(&truth, Weighing::Even);
+    // directions of the noise are known at the truth; where a fit takes them anew, it takes them from its own end
+    problem.weigh(&truth, if problem.weighs_directions() { Weighing::Even } else { Weighing::Full });
     let (pins, _) = pins(&problem, free, &truth, monitor)?;
     let (problem, pins, truth) = (&problem, pins.as_slice(), truth.as_slice());
     let done = AtomicUsize::new(0);

@@ -26,6 +26,16 @@ pub struct Assembly<'a> {
     buffers: Buffers,
 }
 
+/// What is told of each equation beside its residual.
+#[derive(Clone, Copy)]
+struct Wanted {
+    jacobian: bool,
+    /// derivatives of the considered dimensions too
+    considered: bool,
+    /// which standing it is of
+    standings: bool,
+}
+
 impl<'a> Assembly<'a> {
     /// With the free parameters given by index. The readings must have been weighed.
     pub fn new(problem: &'a Problem, free: &[usize], pins: &[Pin], monitor: &'a dyn Monitor) -> Assembly<'a> {
@@ -76,9 +86,17 @@ impl<'a> Assembly<'a> {
     /// # Errors
     /// [`crate::Error::Interrupted`].
     pub fn considered_rows(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
-        self.stream(x, true, true, sink)?;
+        self.stream(x, Wanted { jacobian: true, considered: true, standings: false }, sink)?;
         self.stream_priors(x, true, x.len() + self.considered, sink);
         Ok(())
+    }
+
+    /// The equations of readings at `x`, each with the standing that it is of: see [`Writer::ask_standings`].
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    pub fn rows_of_standings(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
+        self.stream(x, Wanted { jacobian: true, considered: false, standings: true }, sink)
     }
 
     /// Number of considered dimensions: known with an uncertainty, and not fitted.
@@ -86,7 +104,7 @@ impl<'a> Assembly<'a> {
         self.considered
     }
 
-    fn stream(&mut self, x: &[f64], jacobian: bool, considered: bool, sink: &mut dyn RowSink) -> Result<()> {
+    fn stream(&mut self, x: &[f64], wanted: Wanted, sink: &mut dyn RowSink) -> Result<()> {
         for (&j, &value) in self.free.iter().zip(x) {
             self.parameters[j] = value;
         }
@@ -96,16 +114,21 @@ impl<'a> Assembly<'a> {
         let most_dimensions = dimensions.iter().map(Vec::len).max().unwrap_or(0);
         let columns = self.problem.arm().parameter_count() + most_dimensions + 1 + 6;
         let mut out = Writer::new(&mut self.buffers, columns, &self.model, sink, self.monitor);
-        let mut streamed = Ok(());
+        if wanted.standings {
+            out.ask_standings();
+        }
+        let (mut streamed, mut first) = (Ok(()), 0);
         for ((group, unknowns), own) in self.problem.groups().iter().zip(&mut self.unknowns).zip(&dimensions) {
             let at = At { model: &self.model, dimensions: own };
             // without the considered ones, whose numbers are behind the unknowns
-            let kept = (!considered).then(|| unknowns.dimensions.clone());
-            if !considered {
+            let kept = (!wanted.considered).then(|| unknowns.dimensions.clone());
+            if !wanted.considered {
                 let fitted = |unknown: &mut Option<usize>| *unknown = unknown.filter(|&u| u < self.free.len());
                 unknowns.dimensions.iter_mut().for_each(fitted);
             }
-            streamed = group.stream(at, unknowns, jacobian, &mut out);
+            out.count_from(first);
+            first += group.standings();
+            streamed = group.stream(at, unknowns, wanted.jacobian, &mut out);
             if let Some(kept) = kept {
                 unknowns.dimensions = kept;
             }
@@ -125,6 +148,7 @@ impl<'a> Assembly<'a> {
                 rows: padded(priors.len()),
                 targets: (0..unknowns).map(|c| (c, c)).collect(),
                 residual: unknowns,
+                standing: vec![],
             };
             for (row, prior) in priors.iter().enumerate() {
                 let Some(unknown) = self.free.iter().position(|&j| j == prior.parameter) else { continue };
@@ -154,7 +178,7 @@ impl LeastSquares for Assembly<'_> {
     }
 
     fn rows(&mut self, x: &[f64], jacobian: bool, sink: &mut dyn RowSink) -> Result<()> {
-        self.stream(x, jacobian, false, sink)?;
+        self.stream(x, Wanted { jacobian, considered: false, standings: false }, sink)?;
         self.stream_priors(x, jacobian, x.len(), sink);
         for pin in &self.pins {
             let residual = pin.residual(x);
@@ -175,6 +199,7 @@ fn single_row<'a>(values: impl Iterator<Item = &'a f64>, columns: usize) -> RowB
         rows: PAD,
         targets: (0..columns - 1).map(|c| (c, c)).collect(),
         residual: columns - 1,
+        standing: vec![],
     };
     for (column, &value) in values.enumerate() {
         block.columns.column_mut(column)[0] = value;

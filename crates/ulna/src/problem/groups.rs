@@ -165,12 +165,6 @@ impl Problem {
         searched
     }
 
-    /// The same knowledge, groups told by lengths where these are all that they say: nothing has to be placed then.
-    pub(crate) fn lengths_alone(&self) -> Problem {
-        let groups = self.groups.iter().map(|group| group.lengths_alone().unwrap_or_else(|| group.boxed()));
-        self.with_groups(groups.collect())
-    }
-
     /// Number of readings.
     pub fn readings(&self) -> usize {
         self.groups.iter().map(|g| g.len()).sum()
@@ -248,7 +242,7 @@ impl Problem {
 
     /// Whether, moreover, some reading weighs its directions differently.
     pub fn weighs_directions(&self) -> bool {
-        self.weighs_encoders() && self.groups.iter().any(|g| g.equations() > g.len())
+        self.weighs_encoders() && self.groups.iter().any(|g| g.weighs_directions())
     }
 
     /// Weighs the readings for the stated noise at some parameters; what a loss made of them is forgotten.

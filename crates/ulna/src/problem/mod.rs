@@ -7,5 +7,7 @@ pub mod priors;
 mod add;
 mod groups;
 mod parameters;
+mod rows;
 
 pub use groups::Problem;
+pub use rows::{WhitenedRows, whitened_rows};

@@ -17,6 +17,14 @@ pub struct RowBlock {
     pub targets: Vec<(usize, usize)>,
     /// Which column holds the residual.
     pub residual: usize,
+    /// Which standing of an artefact each row tells of, [`RowBlock::NONE`] for rows that tell nothing; empty where nobody
+    /// asked.
+    pub standing: Vec<u32>,
+}
+
+impl RowBlock {
+    /// No standing.
+    pub const NONE: u32 = u32::MAX;
 }
 
 /// Takes blocks of equations.

@@ -100,6 +100,7 @@ mod tests {
             rows: rows.div_ceil(PAD) * PAD,
             targets: (0..8).map(|c| (c, c)).collect(),
             residual: 8,
+            standing: vec![],
         };
         for row in 0..rows {
             let entry = |c: usize| ((row * 9 + c + 1).pow(2) as f64 * 0.754_877_666).fract() - 0.5;

@@ -33,6 +33,32 @@ pub const CASES: &[Case] = &[
         add: |p, r, k| lengths(p, r, k, &[size("length", 443.0, 0.0, true)]),
     },
     Case { label: "bar touched once", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (30, 1)) },
+    Case {
+        label: "bar touched once at each end by one probe",
+        kind: "points",
+        add: |p, r, k| bars(p, r, k, &points(BAR), (30, 0)),
+    },
+    Case {
+        label: "bar touched once at each end whose length may change",
+        kind: "points",
+        add: |p, r, k| {
+            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.5, true)], ..points(BAR) }, (40, 0))
+        },
+    },
+    Case {
+        label: "bar touched once at each end, of unknown length",
+        kind: "points",
+        add: |p, r, k| {
+            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.0, true)], ..points(BAR) }, (40, 0))
+        },
+    },
+    Case {
+        label: "bar touched once at each end here and more often there",
+        kind: "points",
+        add: |p, r, k| {
+            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.5, true)], ..points(BAR) }, (25, 9))
+        },
+    },
     Case { label: "bar touched often", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (3, 13)) },
     Case {
         label: "bar whose length may change",
@@ -174,6 +200,33 @@ fn round(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, diamet
     let reach_mm = problem.arm().reach_mm(0);
     let dimensions = &[Size { value: diameter.value * reach_mm, u: diameter.u * reach_mm, ..diameter }];
     touched(problem, rng, kind, &Stated { dimensions, inside, ..balls(&[6.0, 6.0]) }, (2, 21));
+}
+
+/// Touches of a bar where it stands, each place by one probe: in so many places once at each end, and in so many three
+/// times, all mixed.
+fn bars(
+    problem: &mut Problem,
+    rng: &mut Xoshiro256PlusPlus,
+    kind: &str,
+    stated: &Stated,
+    (once, thrice): (usize, usize),
+) {
+    let n = problem.arm().encoders();
+    let mut of_row: Vec<(i64, usize)> =
+        (0..once + thrice).flat_map(|standing| [(standing as i64, 0), (standing as i64, 1)]).collect();
+    of_row.extend((0..thrice).map(|k| ((once + k) as i64, k % 2)));
+    // rows of a standing need not come one after the other
+    let count = of_row.len();
+    let mixed: Vec<(i64, usize)> = (0..count).map(|i| of_row[i * 7919 % count]).collect();
+    let (q, told) = (angles(rng, n * count), Told::any(rng, count, n, n));
+    let rows = Rows {
+        poses: told.at(&q),
+        probe: &mixed.iter().map(|&(standing, _)| (standing % 2) as usize).collect::<Vec<_>>(),
+        feature: Some(&mixed.iter().map(|&(_, feature)| feature).collect::<Vec<_>>()),
+        placement: Some(&mixed.iter().map(|&(standing, _)| standing).collect::<Vec<_>>()),
+        ..Rows::default()
+    };
+    problem.add(kind, stated, &rows).unwrap();
 }
 
 /// Touches of so many standings, each feature so often.

@@ -31,6 +31,24 @@ pub fn any_full_arm(rng: &mut Xoshiro256PlusPlus, n: usize) -> Arm {
     Arm::with_full_last_link(joints, probes).unwrap()
 }
 
+/// The assumed truth of Cheng 2011, Table 2, with these probes.
+pub fn cheng_2011(probes: &[(&str, [f64; 3])]) -> Arm {
+    let rows = [
+        [0.0, -1.57, 40.0, 255.0],
+        [2.1, 1.57, -40.0, 0.0],
+        [0.2, -1.57, 30.0, 410.0],
+        [2.0, 1.57, -30.0, 0.0],
+        [0.1, -1.57, 30.0, 400.0],
+        [2.3, 1.57, -30.0, 0.0],
+    ];
+    let joint = |[theta0_rad, alpha_rad, a_mm, d_mm]: [f64; 4]| {
+        let (model, sign) = (JointModel::Dh, 1.0);
+        Joint { theta0_rad, alpha_rad, a_mm, d_mm, beta_rad: 0.0, sign, model }
+    };
+    let probes = probes.iter().map(|&(name, tip_mm)| Probe { name: name.into(), tip_mm }).collect();
+    Arm::new(rows.map(joint).to_vec(), 1.0, probes).unwrap()
+}
+
 /// What some arms do beyond their geometry, larger than any arm would.
 pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
     let mut small = |size: f64| rng.random_range(-size..size);

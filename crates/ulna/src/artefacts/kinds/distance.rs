@@ -10,12 +10,11 @@
 use crate::arm::Unit;
 use crate::artefacts::kind::{Asked, Kind, Statement};
 use crate::artefacts::readings::Readings;
-use crate::artefacts::shape::{Known, Shape, Touched};
+use crate::artefacts::shape::{Known, Shape};
 use crate::artefacts::stated::Column;
 use crate::artefacts::surface::Surface;
 use crate::error::Result;
-use crate::geometry::Contact;
-use crate::geometry::point::{Centre, at_known_distances};
+use crate::geometry::point::Centre;
 
 /// The kind; not stated, the offset is 0 and the scale 1.
 pub(super) const KIND: Kind = Kind {
@@ -62,7 +61,7 @@ fn readings(statement: &Statement) -> Result<Box<dyn Readings>> {
 struct Instrument;
 
 impl Shape<3> for Instrument {
-    type Standing = Centre;
+    type Figure = Centre;
 
     fn apart_mm(&self, sizes: &[f64], _: f64, measured_mm: f64) -> f64 {
         sizes[0] + sizes[1] * measured_mm
@@ -70,15 +69,6 @@ impl Shape<3> for Instrument {
 
     fn apart_by(&self, size: usize, measured_mm: f64) -> f64 {
         [1.0, measured_mm][size]
-    }
-
-    fn place(&self, contacts: &[Contact]) -> Centre {
-        at_known_distances(contacts)
-    }
-
-    fn touched(&self, centre: &Centre, contact: &Contact) -> Touched<3> {
-        let (residual_mm, normal) = centre.residual(contact);
-        Touched { residual_mm, normal, own: (-normal).into() }
     }
 
     fn growing(&self, sizes: &[f64], _: &[f64]) -> Vec<f64> {

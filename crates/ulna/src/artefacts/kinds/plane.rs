@@ -5,10 +5,9 @@
 //! ```
 
 use crate::artefacts::kind::Kind;
-use crate::artefacts::shape::{Known, Shape, Touched};
+use crate::artefacts::shape::{Known, Shape};
 use crate::artefacts::stated::Column;
 use crate::artefacts::surface::Surface;
-use crate::geometry::Contact;
 use crate::geometry::plane::Plane;
 
 /// The kind; it has no dimension.
@@ -25,7 +24,7 @@ pub(super) const KIND: Kind = Kind {
 struct Flat;
 
 impl Shape<3> for Flat {
-    type Standing = Plane;
+    type Figure = Plane;
 
     fn apart_mm(&self, _: &[f64], ball_radius_mm: f64, _: f64) -> f64 {
         ball_radius_mm
@@ -33,15 +32,6 @@ impl Shape<3> for Flat {
 
     fn apart_by(&self, _: usize, _: f64) -> f64 {
         0.0
-    }
-
-    fn place(&self, contacts: &[Contact]) -> Plane {
-        Plane::at_known_distances(contacts)
-    }
-
-    fn touched(&self, plane: &Plane, contact: &Contact) -> Touched<3> {
-        let (normal, own) = (plane.normal, plane.derivatives(contact));
-        Touched { residual_mm: plane.residual_mm(contact), normal, own }
     }
 
     fn growing(&self, _: &[f64], _: &[f64]) -> Vec<f64> {

@@ -1,12 +1,13 @@
 //! Lengths and their derivatives, for vectors of rows.
 
 use super::run::Run;
+use crate::artefacts::model::Model;
 use crate::artefacts::noise::Noise;
 use crate::artefacts::writer::Writer;
 use crate::kinematics::Chain;
-use crate::kinematics::batch::{forward, gradient, gradient_between};
-use crate::simd::Lanes;
-use pulp::{Simd, WithSimd};
+use crate::kinematics::batch::{forward, gradient, gradient_between, scratch_len};
+use crate::simd::{Columns, Lanes};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Both tips of vector `k`: distance, and direction from the second to the first.
 #[inline(always)]
@@ -26,6 +27,34 @@ fn between<S: Simd>(
     let distance = squared.sqrt();
     let inverse = distance.reciprocal_or_zero();
     (distance, delta.map(|d| d * inverse))
+}
+
+/// The distance of each row's tips, mm.
+pub(super) fn distances(model: &Model, run: &Run) -> Columns {
+    let mut distances = Columns::zeros(1, run.rows.len());
+    let mut scratch = [0, 1].map(|_| vec![0.0; scratch_len(&model.chain)]);
+    let (chain, tip) = (&model.chain, model.tips_mm[run.probe]);
+    Arch::new().dispatch(DistanceOp { chain, tip, run, out: distances.column_mut(0), scratch: &mut scratch });
+    distances
+}
+
+struct DistanceOp<'a> {
+    chain: &'a Chain,
+    tip: [f64; 3],
+    run: &'a Run,
+    out: &'a mut [f64],
+    scratch: &'a mut [Vec<f64>; 2],
+}
+
+impl WithSimd for DistanceOp<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for k in 0..self.out.len() / S::F64_LANES {
+            let (distance, _) = between(simd, self.chain, self.run, k, self.tip, self.scratch);
+            distance.store(self.out, k);
+        }
+    }
 }
 
 pub(super) struct LengthOp<'a, 'b> {

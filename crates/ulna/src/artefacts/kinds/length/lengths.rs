@@ -1,6 +1,6 @@
 //! Lengths of many rows.
 
-use super::kernels::{LengthOp, VarianceOp};
+use super::kernels::{LengthOp, VarianceOp, distances};
 use super::run::Run;
 use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
@@ -21,7 +21,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// Rows of two poses and a length, in runs of one probe each.
 #[derive(Debug, Clone)]
 pub(in crate::artefacts::kinds) struct Lengths {
-    runs: Vec<Run>,
+    pub runs: Vec<Run>,
     /// the length, where it is not known exactly: what is added to that of every row
     dimensions: Vec<Dimension>,
     /// whether all lengths are one, of which nothing is known
@@ -54,15 +54,8 @@ impl Lengths {
                 continue;
             }
             let [from, to] = ends(&own);
-            runs.push(Run {
-                probe,
-                from,
-                to,
-                length_mm: Columns::gathered(length_mm, 1, &own),
-                weight: ones(own.len()),
-                discounted: None,
-                rows: own,
-            });
+            let lengths: Vec<f64> = own.iter().map(|&r| length_mm[r]).collect();
+            runs.push(Run::new(probe, own, [from, to], &lengths));
         }
         let free = |length: &Dimension| length.is_free() && length_mm.iter().all(|&each| each == length.value);
         Lengths {
@@ -72,11 +65,6 @@ impl Lengths {
             rows: probe_of.len(),
         }
     }
-}
-
-/// Weight one for each row, zero for the padding.
-fn ones(rows: usize) -> Columns {
-    Columns::from_rows(&vec![1.0; rows], 1)
 }
 
 impl Readings for Lengths {
@@ -90,6 +78,10 @@ impl Readings for Lengths {
 
     fn placement_unknowns(&self) -> usize {
         0
+    }
+
+    fn standings(&self) -> usize {
+        self.rows
     }
 
     fn scale_free(&self) -> bool {
@@ -128,7 +120,7 @@ impl Readings for Lengths {
         let model = at.model;
         let mut scratch = [vec![0.0; scratch_len(&model.chain)], vec![0.0; scratch_len(&model.chain)]];
         for run in &mut self.runs {
-            let mut weight = ones(run.rows.len());
+            run.weigh(|_| 1.0);
             if let Some(noise) = noise {
                 let mut variance = Columns::zeros(1, run.rows.len());
                 Arch::new().dispatch(VarianceOp {
@@ -139,12 +131,8 @@ impl Readings for Lengths {
                     variance: variance.column_mut(0),
                     scratch: &mut scratch,
                 });
-                for (w, v) in weight.column_mut(0).iter_mut().zip(variance.column(0)) {
-                    *w = if *w > 0.0 && *v > 0.0 { v.sqrt().recip() } else { *w };
-                }
+                run.weigh(|k| if variance.column(0)[k] > 0.0 { variance.column(0)[k].sqrt().recip() } else { 1.0 });
             }
-            run.weight = weight;
-            run.discounted = None;
         }
     }
 
@@ -188,6 +176,8 @@ impl Readings for Lengths {
                     dimension: !self.dimensions.is_empty(),
                     out,
                 });
+                let block = out.block.rows;
+                out.tell(0..block.min(run.rows.len() - start), |k| run.rows[start + k]);
                 out.flush()?;
             }
         }
@@ -198,9 +188,9 @@ impl Readings for Lengths {
         let mut residuals_mm = vec![0.0; self.rows];
         let mut weights = vec![0.0; self.rows];
         for run in &self.runs {
-            let distance = run.distances(at.model);
+            let distance = distances(at.model, run);
             for (k, &row) in run.rows.iter().enumerate() {
-                residuals_mm[row] = distance[k] - run.length_mm.column(0)[k] - self.added_mm(at);
+                residuals_mm[row] = distance.column(0)[k] - run.length_mm.column(0)[k] - self.added_mm(at);
                 weights[row] = run.weights().column(0)[k];
             }
         }
@@ -230,13 +220,33 @@ impl Readings for Lengths {
         self.runs.iter().flat_map(|run| [run.from.seen(), run.to.seen()]).reduce(Seen::and).unwrap_or_default()
     }
 
-    fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+    fn taken_anew(
+        &self,
+        truth: At,
+        calibrated: &[f64],
+        noise: &Noise,
+        rng: &mut Xoshiro256PlusPlus,
+    ) -> Box<dyn Readings> {
+        Box::new(self.drawn(truth, calibrated, noise, rng))
+    }
+
+    fn thinned(&self, most: usize) -> Box<dyn Readings> {
+        Box::new(self.part(most))
+    }
+
+    fn boxed(&self) -> Box<dyn Readings> {
+        Box::new(self.clone())
+    }
+}
+
+impl Lengths {
+    /// See [`Readings::taken_anew`].
+    pub fn drawn(&self, truth: At, calibrated: &[f64], noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Lengths {
         let mut drawn = self.clone();
-        // the length is what it is; its calibration is drawn anew
-        let artefact_error = self.dimensions.first().map_or(0.0, |c| c.u * normal(rng));
-        if let (Some(dimension), Some(&length)) = (drawn.dimensions.first_mut(), truth.dimensions.first()) {
-            dimension.value = length + artefact_error;
-        }
+        // the length is what it is; its calibration is another
+        let error =
+            calibrated.first().zip(truth.dimensions.first()).map_or(0.0, |(calibrated, truth)| calibrated - truth);
+        drawn.dimensions.iter_mut().zip(calibrated).for_each(|(dimension, &value)| dimension.value = value);
         for run in &mut drawn.runs {
             let from = run.tips(truth.model, &run.from);
             let to = run.tips(truth.model, &run.to);
@@ -248,15 +258,16 @@ impl Readings for Lengths {
                     })
                     .sum::<f64>()
                     .sqrt();
-                run.length_mm.column_mut(0)[k] = distance + artefact_error;
+                run.length_mm.column_mut(0)[k] = distance + error;
             }
             run.from.add_noise(&noise.encoder_rad, rng);
             run.to.add_noise(&noise.encoder_rad, rng);
         }
-        Box::new(drawn)
+        drawn
     }
 
-    fn thinned(&self, most: usize) -> Box<dyn Readings> {
+    /// About `most` of these rows, evenly chosen.
+    pub fn part(&self, most: usize) -> Lengths {
         let keep = most.min(self.rows);
         let mut runs = Vec::new();
         for run in &self.runs {
@@ -277,17 +288,16 @@ impl Readings for Lengths {
             run.rows = (next..next + run.rows.len()).collect();
             next += run.rows.len();
         }
-        Box::new(Lengths { runs, dimensions: self.dimensions.clone(), unknown: self.unknown, rows: next })
+        Lengths { runs, dimensions: self.dimensions.clone(), unknown: self.unknown, rows: next }
     }
 
-    fn boxed(&self) -> Box<dyn Readings> {
-        Box::new(self.clone())
+    /// The same, their length known exactly as it is calibrated.
+    pub fn exact(&self) -> Lengths {
+        Lengths { dimensions: vec![], unknown: false, ..self.clone() }
     }
-}
 
-impl Lengths {
     /// What the length's dimension adds to the length of every row.
-    fn added_mm(&self, at: At) -> f64 {
+    pub fn added_mm(&self, at: At) -> f64 {
         let dimension = self.dimensions.first().zip(at.dimensions.first());
         dimension.map_or(0.0, |(dimension, value)| value - dimension.value)
     }

@@ -7,7 +7,7 @@ use crate::simd::Columns;
 
 /// Rows of one probe.
 #[derive(Debug, Clone)]
-pub(super) struct Run {
+pub(in crate::artefacts::kinds) struct Run {
     pub probe: usize,
     /// which rows of the file
     pub rows: Vec<usize>,
@@ -21,6 +21,20 @@ pub(super) struct Run {
 }
 
 impl Run {
+    /// Rows of the file between whose poses these lengths are, each weighing one.
+    pub fn new(probe: usize, rows: Vec<usize>, [from, to]: [Poses; 2], length_mm: &[f64]) -> Run {
+        let mut weight = Columns::zeros(1, rows.len());
+        weight.column_mut(0)[..rows.len()].fill(1.0);
+        Run { probe, rows, from, to, length_mm: Columns::from_rows(length_mm, 1), weight, discounted: None }
+    }
+
+    /// Weighs each row by itself.
+    pub fn weigh(&mut self, weight: impl Fn(usize) -> f64) {
+        let rows = self.rows.len();
+        self.weight.column_mut(0)[..rows].iter_mut().enumerate().for_each(|(k, w)| *w = weight(k));
+        self.discounted = None;
+    }
+
     pub fn weights(&self) -> &Columns {
         self.discounted.as_ref().unwrap_or(&self.weight)
     }
@@ -29,11 +43,5 @@ impl Run {
         let mut out = Columns::zeros(3, self.rows.len());
         tips_of_probe_mm(&model.chain, poses, model.tips_mm[self.probe], &mut out);
         out
-    }
-
-    pub fn distances(&self, model: &Model) -> Vec<f64> {
-        let (from, to) = (self.tips(model, &self.from), self.tips(model, &self.to));
-        let squared = |k: usize, j: usize| (from.column(j)[k] - to.column(j)[k]).powi(2);
-        (0..self.rows.len()).map(|k| (0..3).map(|j| squared(k, j)).sum::<f64>().sqrt()).collect()
     }
 }

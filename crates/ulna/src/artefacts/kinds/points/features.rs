@@ -15,6 +15,8 @@ pub(super) type Move = (usize, Vector3<f64>);
 pub(super) struct Unknown {
     /// the dimensions that are not known
     pub dimensions: Vec<Dimension>,
+    /// whether the one dimension is the distance of the two features
+    pub is_length: bool,
     /// what each moves
     pub moves: Vec<Move>,
     /// for each feature the variance that it adds to its own reading alone, mm², where it was touched just once
@@ -38,7 +40,8 @@ impl Unknown {
         touches: &[usize],
     ) -> Result<Unknown> {
         let stated = statement.stated;
-        let mut unknown = Unknown { dimensions: vec![], moves: vec![], of_its_own: vec![0.0; features_mm.len()] };
+        let mut unknown =
+            Unknown { dimensions: vec![], is_length: false, moves: vec![], of_its_own: vec![0.0; features_mm.len()] };
         let each_mm = stated.feature_u_mm.unwrap_or_default();
         if let Some(size) = statement.size("length") {
             unknown.of_a_bar(statement, features_mm, frame, size.value)?;
@@ -99,6 +102,7 @@ impl Unknown {
         }
         if let Some(length) = statement.dimension("length") {
             self.dimensions.push(length);
+            self.is_length = true;
             self.moves.push((1, between.normalize()));
         }
         Ok(())

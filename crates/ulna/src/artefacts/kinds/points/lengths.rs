@@ -1,7 +1,6 @@
 //! Touches of features told as lengths between pairs of them.
 
 use super::touched::Points;
-use crate::artefacts::dimension::Dimension;
 use crate::artefacts::kinds::length::Lengths;
 use crate::artefacts::placed::Group;
 use crate::artefacts::readings::Readings;
@@ -17,34 +16,15 @@ pub(super) fn pairs(points: &Points, group: &Group) -> Option<Box<dyn Readings>>
     if !told || pairs.is_empty() {
         return None;
     }
-    Some(Box::new(between(points, touches, &pairs, None)))
-}
-
-/// See [`Readings::lengths_alone`].
-pub(super) fn alone(points: &Points, group: &Group) -> Option<Box<dyn Readings>> {
-    let touches = &group.touches;
-    let (feature, probe) = (&touches.feature, &touches.probe);
-    let a_bar = |rows: &Range<usize>| {
-        let (a, b) = (rows.start, rows.start + 1);
-        rows.len() == 2 && feature[a] != feature[b] && probe[a] == probe[b]
-    };
-    let two_features = points.frame == Frame::Free && points.features_mm.len() == 2;
-    // what is not known of two features is their distance, or there is more to tell than that
-    let known = points.of_its_own.iter().all(|&variance| variance == 0.0) && group.dimensions.len() <= 1;
-    let apart = points.placements.iter().all(|placement| placement.span > 0);
-    if !(two_features && known && apart && touches.standings.iter().all(a_bar)) {
-        return None;
-    }
-    let pairs: Vec<(usize, usize)> = touches.standings.iter().map(|rows| (rows.start, rows.start + 1)).collect();
-    Some(Box::new(between(points, touches, &pairs, group.dimensions.first().cloned())))
+    Some(Box::new(between(points, touches, &pairs)))
 }
 
 /// Pairs of touches as lengths between them.
-fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)], length: Option<Dimension>) -> Lengths {
+fn between(points: &Points, touches: &Touches, pairs: &[(usize, usize)]) -> Lengths {
     let feature = |row: usize| points.features_mm[touches.feature[row]];
     let probe: Vec<usize> = pairs.iter().map(|&(from, _)| touches.probe[from]).collect();
     let length_mm: Vec<f64> = pairs.iter().map(|&(from, to)| (feature(from) - feature(to)).norm()).collect();
-    Lengths::between(&probe, &length_mm, length, |rows| {
+    Lengths::between(&probe, &length_mm, None, |rows| {
         let end = |row_of: fn(&(usize, usize)) -> usize| {
             touches.poses.picked(&rows.iter().map(|&row| row_of(&pairs[row])).collect::<Vec<_>>())
         };

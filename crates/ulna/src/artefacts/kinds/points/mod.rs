@@ -6,6 +6,8 @@
 //!
 //! A seat is an artefact of one feature, a bar of two. With `frame = "arm"` R and t are known (none).
 
+mod apart;
+mod bars;
 mod features;
 mod lengths;
 mod observed;

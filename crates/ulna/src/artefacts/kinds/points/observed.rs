@@ -1,6 +1,6 @@
 //! Touches of features as readings: three numbers each.
 
-use super::lengths::{alone, pairs};
+use super::lengths::pairs;
 use super::placement::Placement;
 use super::scene::Seen;
 use super::touched::Points;
@@ -82,9 +82,5 @@ impl Observed<3> for Points {
 
     fn as_lengths(&self, group: &Group) -> Option<Box<dyn Readings>> {
         pairs(self, group)
-    }
-
-    fn lengths_alone(&self, group: &Group) -> Option<Box<dyn Readings>> {
-        alone(self, group)
     }
 }

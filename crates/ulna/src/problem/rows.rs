@@ -1,0 +1,71 @@
+//! What readings tell of the free parameters, equation by equation, placements eliminated.
+
+use super::assembly::Assembly;
+use super::groups::Problem;
+use crate::artefacts::Weighing;
+use crate::error::{Error, Result};
+use crate::monitor::Monitor;
+use crate::solver::{RowBlock, RowSink};
+
+/// Rows of the whitened Jacobian of which a placement explains nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WhitenedRows {
+    /// Row-major over the free parameters, standing by standing.
+    pub rows: Vec<f64>,
+    /// Which standing each row is of: counted as they first come in each group of readings, group after group; of readings
+    /// that stand nowhere, or whose place is known, each is one.
+    pub standing: Vec<u32>,
+}
+
+/// The rows at the problem's own arm, weighed for the stated noise. A standing leaves as many as its equations are more
+/// than its unknowns; which they are of all that span the same is arbitrary. Priors are left out.
+///
+/// # Errors
+/// No readings, or interrupted.
+pub fn whitened_rows(problem: &mut Problem, free: &[usize], monitor: &dyn Monitor) -> Result<WhitenedRows> {
+    if problem.readings() == 0 {
+        return Err(Error::NoReadings);
+    }
+    let parameters = problem.parameters();
+    problem.weigh(&parameters, Weighing::Full);
+    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut sink = Kept { unknowns: free.len(), kept: WhitenedRows::default() };
+    Assembly::new(problem, free, &[], monitor).rows_of_standings(&x, &mut sink)?;
+    Ok(sink.kept.sorted(free.len()))
+}
+
+impl WhitenedRows {
+    /// Standing by standing: rows of several probes or ways of telling come one after the other.
+    fn sorted(self, unknowns: usize) -> WhitenedRows {
+        if self.standing.is_sorted() {
+            return self;
+        }
+        let mut order: Vec<usize> = (0..self.standing.len()).collect();
+        order.sort_by_key(|&row| self.standing[row]);
+        WhitenedRows {
+            rows: order.iter().flat_map(|&row| &self.rows[row * unknowns..(row + 1) * unknowns]).copied().collect(),
+            standing: order.iter().map(|&row| self.standing[row]).collect(),
+        }
+    }
+}
+
+/// Keeps rows as they come.
+struct Kept {
+    unknowns: usize,
+    kept: WhitenedRows,
+}
+
+impl RowSink for Kept {
+    fn fold(&mut self, block: &mut RowBlock) {
+        let telling = |row: &usize| block.standing[*row] != RowBlock::NONE;
+        let rows: Vec<usize> = (0..block.rows).filter(telling).collect();
+        let first = self.kept.rows.len();
+        self.kept.rows.resize(first + rows.len() * self.unknowns, 0.0);
+        for &(column, unknown) in &block.targets {
+            let values = block.columns.column(column);
+            let own = self.kept.rows[first..].iter_mut().skip(unknown).step_by(self.unknowns);
+            own.zip(&rows).for_each(|(own, &row)| *own = values[row]);
+        }
+        self.kept.standing.extend(rows.iter().map(|&row| block.standing[row]));
+    }
+}
