@@ -17,7 +17,7 @@ import polars as pl
 import polars.exceptions
 
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
-from ulna.formats.header import Header, Numeric, Piece
+from ulna.formats.header import MOST_CELLS, Header, Numeric, Piece, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.tables.marks import UTF16
 from ulna.ground.errors import UlnaInputError
@@ -179,26 +179,35 @@ class TextTable(Header):
 
     def _walk(self, numeric: Numeric, columns: Sequence[str]) -> int:
         """Go through the file cell by cell; the number of data rows, blank lines at the end not counted. Raises
-        UlnaInputError for the first line that is no row, and the first bad cell of `columns`."""
+        UlnaInputError for lines that are no row, and bad cells of `columns`."""
         checked = [(k, name, numeric(name)) for k, name in enumerate(self.columns) if name in columns]
-        row, last = 0, 0
+        row, last, count = 0, 0, 0
+        told: list[str] = []
         try:
             with self.path.open(encoding="utf-8-sig", newline="") as stream:
                 reader = csv.reader(stream, delimiter=self.separator)
                 for row, cells in enumerate(islice(reader, self.lines, None), start=1):
                     if not cells:
                         continue
+                    found: list[str] = []
                     if last != row - 1:
-                        raise UlnaInputError(
+                        found.append(
                             f"{self.path}: {self.where(last + 1)} is blank; expected a reading. Remove the line."
                         )
                     last = row
                     if len(cells) != len(self.columns):
-                        self._wrong_count(row, cells, sum(map(numeric, self.columns)))
-                    for k, name, is_number in checked:
-                        value = number_of(cells[k], self.decimal) if is_number else 0.0
-                        if value is None or value - value != 0.0 or not cells[k].strip():
-                            raise UlnaInputError(self._refusal(row, name, cells[k], numeric))
+                        found.append(self._wrong_count(row, cells, sum(map(numeric, self.columns))))
+                    else:
+                        bad = [
+                            (name, cells[k])
+                            for k, name, is_number in checked
+                            if _is_bad(cells[k], number_of(cells[k], self.decimal) if is_number else 0.0)
+                        ]
+                        count += len(bad)
+                        bad = bad[: MOST_CELLS - len(told)]
+                        told += [self._refusal(row, name, cell, numeric) for name, cell in bad]
+                    count += len(found)
+                    told += found[: MOST_CELLS - len(told)]
         except UnicodeDecodeError as error:
             raise UlnaInputError(
                 f"{self.path}: the file is not UTF-8 text (byte 0x{error.object[error.start]:02x}); expected "
@@ -210,9 +219,11 @@ class TextTable(Header):
             raise UlnaInputError(
                 f"{self.path}: {self.where(row + 1)}: {what}; expected {self.what}. Correct it."
             ) from None
+        if told:
+            raise refused(self, told, count)
         return last
 
-    def _wrong_count(self, row: int, cells: list[str], numbers: int) -> NoReturn:
+    def _wrong_count(self, row: int, cells: list[str], numbers: int) -> str:
         hint = "Correct the row."
         if self.separator == "," and len(cells) >= len(self.columns) + numbers // 2 and numbers > 1:
             hint = "Are these decimal commas? Write numbers with a decimal point."
@@ -224,7 +235,7 @@ class TextTable(Header):
             hint = "Is a quotation mark not closed? A cell runs over several lines."
         count = f"{len(cells)} cell{'s' * (len(cells) != 1)}"
         as_in = "as in the header" if self.lines else "as in the first line"
-        raise UlnaInputError(
+        return (
             f"{self.path}: {self.where(row)} has {count}, expected {len(self.columns)} {as_in} "
             f"({', '.join(self.own(column) for column in self.columns)}). {hint}"
         )
@@ -232,6 +243,10 @@ class TextTable(Header):
     def _unreadable(self, error: Exception) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}. Correct it.") from None
+
+
+def _is_bad(cell: str, value: float | None) -> bool:
+    return value is None or value - value != 0.0 or not cell.strip()
 
 
 def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
