@@ -14,7 +14,7 @@ import pytest
 from tests.foreign_tables import second_sheet, sheet
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
-from ulna.formats.tables.workbook_cell import address
+from ulna.formats.tables.workbook_cell import address, far_cell
 
 TABLE = pl.read_csv(BARS.encode())
 Edit = Callable[[Any], object]
@@ -150,3 +150,17 @@ def test_any_byte_may_be_wrong(tmp_path: Path) -> None:
         small.write("b.xlsx", content[:k] + bytes([content[k] ^ 0x55]) + content[k + 1 :])
         refused += small.refuses()
     assert refused > 20
+
+
+@pytest.mark.parametrize("far", ["AMJ50000", "AMJ1048576", "XFD1048576"])
+def test_a_note_at_the_end_of_the_sheet(tmp_path: Path, far: str) -> None:
+    """What a spreadsheet's last cell costs is said, and not paid: a workbook of 5 kB would need gigabytes."""
+    sheet(TABLE, tmp_path / "b.xlsx", edit=put(**{far: "note"}))
+    message = told(tmp_path, "b.xlsx")
+    says(message, str(tmp_path / "b.xlsx"), f"Sheet1!{far}")
+
+
+def test_a_wide_sheet_is_no_stray_cell(tmp_path: Path) -> None:
+    wide = TABLE.with_columns(pl.lit("x").alias(f"note{k}") for k in range(60))
+    sheet(wide, tmp_path / "b.xlsx")
+    assert far_cell(tmp_path / "b.xlsx", "Sheet1") is None

@@ -23,7 +23,7 @@ from ulna.formats.layout import Layout
 from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import is_blank
 from ulna.formats.tables.marks import OLD_OFFICE
-from ulna.formats.tables.workbook_cell import address, stored_cell
+from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
 from ulna.ground.errors import UlnaInputError, nearest
 
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
@@ -114,6 +114,12 @@ def open_workbook(path: Path, start: bytes, what: str, layout: Layout) -> SheetT
         workbook = CalamineWorkbook.from_path(path)
         names = [each.name for each in workbook.sheets_metadata if each.typ == SheetTypeEnum.WorkSheet]
         name = _chosen(names, path, layout)
+        far = far_cell(path, name)
+        if far is not None:
+            raise UlnaInputError(
+                f"{path}: {address(name, 0, 0)[:-2]}{far} holds something far from all else, with millions of empty "
+                f"cells between; expected {what}. Clear that cell, or copy the table to a sheet of its own."
+            )
         sheet = workbook.get_sheet_by_name(name)
         return _table(path, sheet, sheet.to_python(skip_empty_area=False), layout)
     except CalamineError as error:
