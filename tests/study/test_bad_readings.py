@@ -63,7 +63,10 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     "broken Parquet": (b"PAR1 and then nothing", ("not a readable Parquet file",)),
     "a joint too few": (BARS.replace("q3,", "r3,"), ("'q3' is missing", "2 columns q…", "3 joints", "q1 … q3")),
     "a joint too many": (BARS.replace("placement", "q4"), ("'q4' is one too many", "4 columns q…", "3 joints")),
-    "capital": (BARS.replace("q3,", "Q3,"), ("'q3' is missing", "Rename 'Q3'")),
+    "its own unit": (
+        BARS.replace("q3,", "q3 [deg],"),
+        ("column 'q3 [deg]' (q3): the file says 'deg', but its angles are said to be in rad", "key 'angle'"),
+    ),
     "column twice": (BARS.replace("q3,", "q2,"), ("column 'q2' appears twice", "Remove one")),
     "column unnamed": (BARS.replace("q3,", ","), ("line 2, column 3: got '1.102743' in a column without a name",)),
     "near miss": (BARS.replace("placement", "placment"), ("unknown column 'placment'", "Did you mean 'placement'?")),

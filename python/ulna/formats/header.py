@@ -18,6 +18,7 @@ from typing import Self
 import numpy as np
 import polars as pl
 
+from ulna.formats.places import Places
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
@@ -25,6 +26,7 @@ MOST_CELLS = 20
 """Bad cells that one message names."""
 #: what to do, in messages about a cell: said once where there are several
 _USUAL = re.compile(r"(?<=[.]) (Correct it|Fill it)[^.]*[.]$")
+_EXPECTED = re.compile(r"(?=[,;] expected )")
 
 #: true for the name of a column that holds numbers
 Numeric = Callable[[str], bool]
@@ -103,10 +105,11 @@ class Header(ABC):
         """How a message calls a cell."""
         return f"{self.where(row)}, {self.named(column)}"
 
-    def place(self, row: int, column: str | None = None) -> str:
-        """Where a data row, or a cell of it, stands in the file, as its own program calls it: "line 7",
-        `Messung!A12`; "" where rows have no other name than their number."""
-        return ""
+    @property
+    def row_places(self) -> Places | None:
+        """Where data rows stand in the file, as its own program calls them: "line 7", `Messung!A12`; None where rows
+        have no other name than their number."""
+        return None
 
     @abstractmethod
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
@@ -181,6 +184,10 @@ def refused(header: Header, told: Sequence[str], count: int) -> UlnaInputError:
         return UlnaInputError(told[0])
     start = f"{header.path}: "
     first, *others = [each.removeprefix(start) for each in told]
-    shortly = [_USUAL.sub("", each).rstrip(".") for each in others]
+    tail = _EXPECTED.split(first, maxsplit=1)[-1]
+    shortly = [
+        _EXPECTED.split(each, maxsplit=1)[0] if each.endswith(tail) else _USUAL.sub("", each).rstrip(".")
+        for each in others
+    ]
     more = f"; and {count - len(told)} more" if count > len(told) else ""
     return UlnaInputError(f"{start}{first} There are {count} such places: also {'; '.join(shortly)}{more}.")

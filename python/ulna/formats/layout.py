@@ -7,6 +7,7 @@ file leaves no doubt, seen and remarked upon; a key that a file has no use for i
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
@@ -16,6 +17,7 @@ from pydantic import Field
 from ulna.formats.encodings import known as known_encoding
 from ulna.formats.header import Header
 from ulna.formats.models import Strict
+from ulna.formats.near_names import near_names
 from ulna.formats.spelling import Spelling
 from ulna.ground.errors import UlnaInputError, nearest
 
@@ -84,8 +86,14 @@ class Layout:
         return cls(**given | empty, place=place, table=table).checked()
 
     @classmethod
-    def of_options(cls, columns: Sequence[str] | Mapping[str, str] | None = None, **given: Any) -> Layout:
-        """Of options of a command; columns: `q1=shoulder` each, or a mapping. Raises UlnaInputError as `of`."""
+    def of_options(
+        cls,
+        columns: Sequence[str] | Mapping[str, str] | None = None,
+        names: Sequence[str] | Mapping[str, Mapping[str, str | Sequence[str]]] | None = None,
+        **given: Any,
+    ) -> Layout:
+        """Of options of a command; columns: `q1=shoulder` each, or a mapping; names: `probe.tip=Taster 1` each, or a
+        mapping as in a study. Raises UlnaInputError as `of`."""
         pairs: dict[str, str] = dict(columns) if isinstance(columns, Mapping) else {}
         for pair in () if columns is None or isinstance(columns, Mapping) else columns:
             ours, equals, theirs = pair.partition("=")
@@ -98,7 +106,21 @@ class Layout:
         decimal = given.get("decimal")
         if decimal not in (None, ".", ","):
             raise UlnaInputError(f"--decimal: got '{decimal}'; expected '.' or ','. Correct it.")
-        return cls(**given, columns=pairs, place=("--", ""), table="").checked()
+        labels: dict[str, Mapping[str, str | Sequence[str]]] = {}
+        if isinstance(names, Mapping):
+            labels = dict(names)
+        else:
+            found: dict[str, dict[str, list[str]]] = {}
+            for name in names or ():
+                match = re.fullmatch(r"([^.=]+)\.([^=]+)=(.+)", name)
+                if match is None:
+                    raise UlnaInputError(
+                        f"--name: got '{name}'; expected column.Ulna's name = what stands in the file's cells, such as "
+                        "'probe.tip=Taster 1'. Correct it."
+                    )
+                found.setdefault(match[1], {}).setdefault(match[2], []).append(match[3])
+            labels.update(found)
+        return cls(**given, columns=pairs, names=labels, place=("--", ""), table="").checked()
 
     def checked(self) -> Layout:
         """The same, `tab` as the character that it is. Raises UlnaInputError for keys that cannot be meant."""
@@ -209,7 +231,15 @@ class Layout:
                     f"{self.key('columns')}: {ours} is to be the column '{name}', but {header.path} has a column "
                     f"'{ours}' as well; expected one of them. Remove {ours} from the key, or rename a column."
                 )
-        return self._labelled(header.renamed({name: ours for name, ours in theirs.items() if name != ours}))
+        near, units = near_names(header, known, theirs)
+        if near:
+            shown = ", ".join(f"'{name}' as {ours}" for name, ours in near.items())
+            header = dataclasses.replace(
+                header,
+                remarks=[*header.remarks, f"{header.path}: columns taken by their names: {shown}."],
+                units={**header.units, **units},
+            )
+        return self._labelled(header.renamed({name: ours for name, ours in (theirs | near).items() if name != ours}))
 
     def _labelled(self, header: AnyHeader) -> AnyHeader:
         """The table with the cells of its columns called as `names` says. Raises UlnaInputError."""

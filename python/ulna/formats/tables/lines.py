@@ -19,6 +19,7 @@ from ulna.formats.cells import text_cell, wrong_count
 from ulna.formats.encodings import decoded, utf16
 from ulna.formats.header import MOST_CELLS, Numeric, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.places import Places
 from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import Grid, is_blank
 from ulna.ground.errors import UlnaInputError
@@ -44,8 +45,9 @@ class LineTable(GridTable):
     def where(self, row: int) -> str:
         return f"row {row} (line {self.lines[row - 1]} of the file)"
 
-    def place(self, row: int, column: str | None = None) -> str:
-        return f"line {self.lines[row - 1]}"
+    @property
+    def row_places(self) -> Places:
+        return Places("line {}", self.lines)
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         self._check_counts()

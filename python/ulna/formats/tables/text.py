@@ -19,6 +19,7 @@ import polars.exceptions
 from ulna.formats.cells import number_of, text_cell, wrong_count
 from ulna.formats.header import MOST_CELLS, Header, Numeric, Piece, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.places import Places
 from ulna.formats.tables.lines import LineTable, open_lines, untidy
 from ulna.ground.errors import UlnaInputError
 
@@ -43,8 +44,9 @@ class TextTable(Header):
     def where(self, row: int) -> str:
         return f"row {row} (line {row + self.lines} of the file)"
 
-    def place(self, row: int, column: str | None = None) -> str:
-        return f"line {row + self.lines}"
+    @property
+    def row_places(self) -> Places:
+        return Places("line {}", self.lines)
 
     # ------------------------------------------------------------ all rows at once
 

@@ -20,6 +20,7 @@ from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, Shee
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
 from ulna.formats.header import Numeric
 from ulna.formats.layout import Layout
+from ulna.formats.places import Places
 from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import is_blank
 from ulna.formats.tables.marks import OLD_OFFICE
@@ -45,11 +46,12 @@ class SheetTable(GridTable):
         return f"row {row} (row {self.lines[row - 1]} of sheet '{self.sheet}')"
 
     def at(self, row: int, column: str) -> str:
-        return f"row {row} ({self.place(row, column)}), {self.named(column)}"
+        cell = address(self.sheet, self.lines[row - 1] - 1, self.places[self.columns.index(column)])
+        return f"row {row} ({cell}), {self.named(column)}"
 
-    def place(self, row: int, column: str | None = None) -> str:
-        k = self.places[0 if column is None else self.columns.index(column)]
-        return address(self.sheet, self.lines[row - 1] - 1, k)
+    @property
+    def row_places(self) -> Places:
+        return Places(address(self.sheet, 0, self.places[0]).removesuffix("1") + "{}", self.lines)
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         found = []

@@ -21,6 +21,12 @@ from ulna.formats.wording import SHOWN, counted, rows_named
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
+_UNIT_WORDS = {
+    **dict.fromkeys(("rad", "radian", "radians", "弧度"), "rad"),
+    **dict.fromkeys(("deg", "°", "degree", "degrees", "度"), "deg"),
+    **dict.fromkeys(("counts", "count", "cnt", "inc", "pulses"), "counts"),
+}
+
 
 def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
     """The probe that a file's key names; the arm's only one where it names none. Raises UlnaInputError."""
@@ -41,6 +47,7 @@ def check_scale(
 ) -> None:
     """Angles of more than two turns were written in another unit. (N, n) rad; factors (n,) rad per unit; remedy: how
     the unit is stated here. Raises UlnaInputError."""
+    _check_own_units(header, [f"{letter}{k + 1}" for k in range(len(factors))], unit, remedy)
     for k, factor in enumerate(factors):
         column = q_rad[:, k]
         if max(column.max(), -column.min()) <= MOST_RAD:
@@ -53,6 +60,18 @@ def check_scale(
             f"{column[first] / factor:g} {unit}, more than two turns; expected angles within ±4π rad (720°). Are "
             f"these {asked}? {remedy}"
         )
+
+
+def _check_own_units(header: Header, columns: list[str], unit: str, remedy: str) -> None:
+    """What the file itself says of its units is what the study says. Raises UlnaInputError."""
+    for column in columns:
+        said = header.units.get(header.own(column), "")
+        own = _UNIT_WORDS.get(said.casefold(), unit)  # what is no unit of angles says nothing of them
+        if own != unit:
+            raise UlnaInputError(
+                f"{header.path}: {header.named(column)}: the file says '{said}', but its angles are said to be in "
+                f"{unit}; expected the same. {remedy}"
+            )
 
 
 def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:
