@@ -165,7 +165,18 @@ def test_wrong_content_under_its_ending_is_a_message(
         assert str(path) in str(caught.value)
 
 
-OPTIONS: dict[str, Any] = {"separator": ";", "decimal": ",", "header": False, "sheet": "one", "dataset": "run"}
+OPTIONS: dict[str, Any] = {
+    "separator": ";",
+    "decimal": ",",
+    "thousands": "'",
+    "encoding": "utf-8",
+    "comment": "#",
+    "header": False,
+    "units_row": False,
+    "fill_down": ("feature",),
+    "sheet": "one",
+    "dataset": "run",
+}
 
 
 @every_format
@@ -209,7 +220,7 @@ def test_what_messages_call_a_table() -> None:
         ({"listed": " "}, "'CSV': 'listed' is empty: say how messages call it"),
         ({"endings": ()}, "'CSV': it has no endings: say how its files are usually called"),
         ({"endings": ("CSV",)}, "ending 'CSV': begin it with a point, in small letters"),
-        ({"keys": ("seperator",)}, "key 'seperator': no key of TableKeys; known are separator, decimal, header"),
+        ({"keys": ("seperator",)}, "key 'seperator': no key of TableKeys; known are separator, decimal, thousands, "),
     ],
 )
 def test_a_format_that_lacks_something_says_what(change: dict[str, Any], told: str) -> None:

@@ -67,7 +67,6 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "infinity": (cell(SEMICOLONS, 3, "-inf"), GERMAN, ("row 3 (line 4", "got '-inf', expected a finite number")),
     "a gap": (cell(SEMICOLONS, 3, ""), GERMAN, ("row 3 (line 4", "'q1'", "is empty", "a number")),
     "a cell too many": (line(SEMICOLONS, 2, "1;2;3;4;5;6"), GERMAN, ("row 2 (line 3", "6 cells, expected 5")),
-    "a blank line": (line(SEMICOLONS, 2, ""), GERMAN, ("row 2 (line 3 of the file) is blank",)),
     "digits of elsewhere": (cell(BARS, 3, "١"), "", ("row 3 (line 4", "'q1'", "got '١'", "expected a")),
     "only numbers": ("1,2,3\n4,5,6\n", "", ("line 1 holds numbers", "header = false in [[readings]]")),
     "no header and no columns": (

@@ -14,7 +14,7 @@ import pytest
 from tests.foreign_tables import second_sheet, sheet
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
-from ulna.formats.tables.workbook_cell import address
+from ulna.formats.tables.workbook_cell import address, far_cell
 
 TABLE = pl.read_csv(BARS.encode())
 Edit = Callable[[Any], object]
@@ -58,13 +58,7 @@ CASES: dict[str, tuple[Edit, tuple[str, ...]]] = {
     ),
     "unknown feature": (put(E4="C"), ("row 3 (Sheet1!E4), column 'feature': got 'C'", "artefact 'bar'", "Known: A, B")),
     "degrees": (put(B4=95.5), ("row 3 (Sheet1!B4), column 'q2': got 95.5 rad", "±4π rad")),
-    "a remark beside": (put(G4="note"), ("Sheet1!G4: got 'note' in a column without a name", "Name the column")),
-    "no name": (put(C1=None), ("Sheet1!C2: got '1.102743' in a column without a name", "a name in row 1")),
-    "a title above": (lambda page: page.insert_rows(1), ("row 1 of sheet 'Sheet1' is blank", "Remove the rows above")),
-    "a blank row": (
-        put(A5=None, B5=None, C5=None, D5=None, E5=" "),
-        ("row 4 (row 5 of sheet 'Sheet1') is blank", "Remove the row"),
-    ),
+    "no name": (put(C1=None), ("Sheet1!C2: got '1.102743' in a column without a name", "a name in the header")),
     "a name twice": (put(B1="q1"), ("column 'q1' appears twice",)),
     "numbers for names": (put(A1=1, B1=2, C1=3, D1=4, E1=5), ("row 1 of sheet 'Sheet1' holds numbers (1, 2, 3, …)",)),
     "nothing": (lambda page: page.delete_rows(1, 20), ("sheet 'Sheet1' is empty", "Name another sheet")),
@@ -156,3 +150,17 @@ def test_any_byte_may_be_wrong(tmp_path: Path) -> None:
         small.write("b.xlsx", content[:k] + bytes([content[k] ^ 0x55]) + content[k + 1 :])
         refused += small.refuses()
     assert refused > 20
+
+
+@pytest.mark.parametrize("far", ["AMJ50000", "AMJ1048576", "XFD1048576"])
+def test_a_note_at_the_end_of_the_sheet(tmp_path: Path, far: str) -> None:
+    """What a spreadsheet's last cell costs is said, and not paid: a workbook of 5 kB would need gigabytes."""
+    sheet(TABLE, tmp_path / "b.xlsx", edit=put(**{far: "note"}))
+    message = told(tmp_path, "b.xlsx")
+    says(message, str(tmp_path / "b.xlsx"), f"Sheet1!{far}")
+
+
+def test_a_wide_sheet_is_no_stray_cell(tmp_path: Path) -> None:
+    wide = TABLE.with_columns(pl.lit("x").alias(f"note{k}") for k in range(60))
+    sheet(wide, tmp_path / "b.xlsx")
+    assert far_cell(tmp_path / "b.xlsx", "Sheet1") is None

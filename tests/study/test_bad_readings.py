@@ -48,27 +48,28 @@ FILES: dict[str, tuple[str | bytes, tuple[str, ...]]] = {
     ),
     "an open quotation mark": (
         BARS.replace("\n", '\n"', 1),
-        ("row 1 (line 2", "has 1 cell,", "quotation mark not closed?"),
+        ("line 2: a quotation mark is opened and not closed before the end of the file",),
     ),
-    "a comment first": ("# read on Monday\n" + BARS, ("line 1 begins with '#'", "read on Monday", "q1 … q3")),
-    "old line ends": (BARS.replace("\n", "\r").encode(), ("lone carriage return", "Unix or Windows line ends")),
-    "latin header": (BARS.replace("feature", "länge").encode("latin-1"), ("line 1 is not UTF-8", "Save it as UTF-8")),
     "open quote": (
         BARS.replace(",A", ',"A', 1) + BARS.split("\n", 1)[1] * 700,
-        ("row 1", "quotation mark is not closed"),
+        ("line 2", "quotation mark is not closed"),
     ),
-    "latin": (BARS.replace(",A", ",Ä").encode("latin-1"), ("not UTF-8", "0xc4", "Save it as UTF-8")),
-    "sixteen bits": (BARS.encode("utf-16"), ("UTF-16", "Save it as UTF-8")),
+    "nobody's letters": (
+        BARS.replace(",A", ",\u0416\u0444").encode("cp1251"),
+        ("line 2 is not UTF-8 text", "as cp1251 it reads '\u0416\u0444'", 'Say encoding = "cp1252" in [[readings]]'),
+    ),
     "workbook": (b"PK\x03\x04\x14\x00", ("Excel workbook", "Export the sheet as CSV")),
     "binary": (b"\x00\x01\x02\x03", ("binary",)),
     "broken Parquet": (b"PAR1 and then nothing", ("not a readable Parquet file",)),
     "a joint too few": (BARS.replace("q3,", "r3,"), ("'q3' is missing", "2 columns q…", "3 joints", "q1 … q3")),
     "a joint too many": (BARS.replace("placement", "q4"), ("'q4' is one too many", "4 columns q…", "3 joints")),
-    "capital": (BARS.replace("q3,", "Q3,"), ("'q3' is missing", "Rename 'Q3'")),
+    "its own unit": (
+        BARS.replace("q3,", "q3 [deg],"),
+        ("column 'q3 [deg]' (q3): the file says 'deg', but its angles are said to be in rad", "key 'angle'"),
+    ),
     "column twice": (BARS.replace("q3,", "q2,"), ("column 'q2' appears twice", "Remove one")),
-    "column unnamed": (BARS.replace("q3,", ","), ("column 3 has no name",)),
+    "column unnamed": (BARS.replace("q3,", ","), ("line 2, column 3: got '1.102743' in a column without a name",)),
     "near miss": (BARS.replace("placement", "placment"), ("unknown column 'placment'", "Did you mean 'placement'?")),
-    "blank line": (BARS.replace("\n", "\n\n", 3), ("row 1 (line 2 of the file) is blank", "Remove the line")),
     "short row": (BARS.replace(",1,A", ",A", 1), ("row 1 (line 2", "4 cells, expected 5")),
     "temperatures": (BARS.replace("placement", "temperature2"), ("temperature2", "temperature1 … temperature3")),
 }
@@ -227,7 +228,7 @@ def test_pieces_of_a_file_name_the_bad_cell_too(tmp_path: Path) -> None:
     rows = [f"{k},{k}" for k in range(1000)]
     for at, cell, fragments in (
         (700, "7,x", ("row 701 (line 702", "column 'q2'", "got 'x'")),
-        (650, "", ("row 651 (line 652 of the file) is blank",)),
+        (650, "7", ("row 651 (line 652 of the file) has 1 cell, expected 2",)),
         (999, "1,nan", ("row 1000 (line 1001", "got 'nan'")),
     ):
         path.write_text("\n".join(["q1,q2", *rows[:at], cell, *rows[at + 1 :]]) + "\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ulna.arm.conditions import CONDITIONS, Condition
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.labels import Labels
+from ulna.formats.places import Places
 from ulna.ground.arrays import F64, I64, Bool
 
 
@@ -24,6 +25,8 @@ class InputFile:
     sha256: str
     rows: int
     """Data rows; 0 for a file that has none (an arm, a study)."""
+    places: Places | None = field(default=None, compare=False, repr=False)
+    """Where they stand in the file, as its own program counts."""
 
 
 @dataclass
@@ -71,8 +74,8 @@ class Readings:
     def conditions(self) -> Iterator[tuple[Condition, str, F64]]:
         """Those that are said, each with the name of its columns."""
         for condition in CONDITIONS:
-            for name, field in condition.fields.items():
-                said = getattr(self, field)
+            for name, key in condition.fields.items():
+                said = getattr(self, key)
                 if said is not None:
                     yield condition, name, said
 

@@ -56,7 +56,7 @@ class FittedStudy:
             "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: over_all(self._after),
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
-            "outliers": lambda: outliers(self._residuals) if self._any_outliers() else [],
+            "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
         }
 

@@ -52,6 +52,8 @@ class OutlierEntry(ReadingEntry):
     norm_mm: float
     times_scatter: float
     counted: float | None = None
+    place: str | None = None
+    """Where the row stands in its file: "line 7", `Messung!A12`."""
 
 
 class OverallEntry(Open):

@@ -39,6 +39,27 @@ def measure(
         str | None, typer.Option("--separator", metavar="SIGN", help='CSV: between columns; or "tab".')
     ] = None,
     decimal: Annotated[str | None, typer.Option("--decimal", metavar="SIGN", help='CSV: "," or ".".')] = None,
+    thousands: Annotated[
+        str | None, typer.Option("--thousands", metavar="SIGN", help="CSV: between the thousands of numbers.")
+    ] = None,
+    encoding: Annotated[
+        str | None, typer.Option("--encoding", metavar="NAME", help="CSV: cp1252, gbk, …; else UTF-8.")
+    ] = None,
+    comment: Annotated[
+        str | None, typer.Option("--comment", metavar="SIGN", help="CSV, Excel: rows that begin so are not read.")
+    ] = None,
+    header: Annotated[
+        int | None,
+        typer.Option("--header", metavar="LINE", min=1, help="CSV, Excel: which line names the columns, if not found."),
+    ] = None,
+    units_row: Annotated[
+        bool | None,
+        typer.Option("--units-row/--no-units-row", help="CSV, Excel: whether units stand below the names."),
+    ] = None,
+    fill_down: Annotated[
+        list[str] | None,
+        typer.Option("--fill-down", metavar="COLUMN", help="CSV, Excel: gaps mean the cell above; repeat it."),
+    ] = None,
     no_header: Annotated[
         bool, typer.Option("--no-header", help="CSV, Excel: columns are called c1, c2, … in --column.")
     ] = False,
@@ -51,6 +72,10 @@ def measure(
         typer.Option(
             "--column", metavar="OURS=THEIRS", help="Ulna's name = the file's; repeat it.", show_default=False
         ),
+    ] = None,
+    name: Annotated[
+        list[str] | None,
+        typer.Option("--name", metavar="COLUMN.OURS=THEIRS", help="Ulna's name = what stands in the cells; repeat it."),
     ] = None,
     force: Force = False,
     as_json: Json = False,
@@ -72,13 +97,15 @@ def measure(
     from ulna.measuring.measure import measure_to_stream
 
     choices: Any = {"angle": angle, "units": units, "temperature_c": temperature, "covariance": covariance}
-    table: Any = {"separator": separator, "decimal": decimal, "header": not no_header, "sheet": sheet}
-    layout = Layout.of_options(column, dataset=dataset, **table)
+    table: Any = {"separator": separator, "decimal": decimal, "sheet": sheet}
+    table |= {"thousands": thousands, "encoding": encoding, "comment": comment, "units_row": units_row}
+    table |= {"fill_down": tuple(fill_down or ()), "header": (header or True) if not no_header else False}
+    layout = Layout.of_options(column, name, dataset=dataset, **table)
     if out is None:
         choices["layout"] = layout
         found = measure_to_stream(arm, readings, probe, sys.stdout.buffer, json_lines=as_json, **choices)
     else:
-        choices |= {**table, "dataset": dataset, "columns": layout.columns}
+        choices |= {**table, "dataset": dataset, "columns": layout.columns, "names": layout.names}
         with output.progress_bar() as progress:
             found = measure_to_file(arm, readings, probe, out, force=force, progress=progress, **choices)
         if as_json:

@@ -8,6 +8,8 @@ from typing import Any
 import polars as pl
 
 from ulna.formats.header import Header, Numeric
+from ulna.formats.layout import Layout
+from ulna.formats.spelling import PLAIN, Spelling, thousands_of
 
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
@@ -20,6 +22,56 @@ def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric,
     return f"{at}: got '{cell[:60]}', expected {kind}. Correct it or remove the row."
 
 
+def text_cell(
+    header: Header, row: int, column: str, cell: str, numeric: Numeric, layout: Layout, no_header: bool
+) -> str:
+    """The same of a cell of a text: what stands there may be a number in another spelling than the file is said to
+    have. no_header: whether the cell is in the first row of a file that is said to have no header."""
+    at = f"{header.path}: {header.at(row, column)}"
+    decimal = layout.decimal or "."
+    if numeric(column) and decimal == "." and not layout.thousands and is_decimal_comma(cell):
+        say = "" if layout.separator in (None, ",") else f"Say {layout.say('decimal', ',')}, or export"
+        return (
+            f"{at}: got '{cell}', a decimal comma; expected a number with a decimal point. {say or 'Export'} the "
+            "table again so."
+        )
+    pointed = "." in cell and number_of(cell.replace(".", ""), ",") is not None
+    if numeric(column) and decimal == "," and not layout.thousands and pointed:
+        return (
+            f"{at}: got '{cell}', with a point; expected a number with a decimal comma ({layout.key('decimal')}). "
+            f"Correct the key, say {layout.say('thousands', '.')} where points stand between thousands, or export the "
+            "table again without them."
+        )
+    sign = "" if layout.thousands else thousands_of(cell, decimal)
+    if numeric(column) and sign:
+        return (
+            f"{at}: got '{cell[:60]}', expected a number. Say {layout.say('thousands', sign)} where that sign stands "
+            "between thousands, or correct the cell."
+        )
+    if numeric(column) and no_header and cell.strip():
+        return (
+            f"{at}: got '{cell[:60]}', expected a number, because the file is said to have no header "
+            f"({layout.key('header')}). Correct the cell, or remove that where this is the header."
+        )
+    return bad_cell(header, row, column, cell, numeric, decimal)
+
+
+def wrong_count(header: Header, row: int, cells: list[str], width: int, separator: str, named: bool) -> str:
+    """The message for a row of a text with more or fewer cells than the header (named) or the first row."""
+    hint = "Correct the row."
+    if separator == "," and len(cells) >= width + (width + 1) // 4 and width > 1:
+        hint = "Are these decimal commas? Write numbers with a decimal point."
+    elif len(cells) == 1 and separator != ";" and ";" in cells[0]:
+        hint = f"Are the columns separated by semicolons? Write '{separator}' between them and points in numbers."
+    elif any("\n" in cell for cell in cells):
+        hint = "Is a quotation mark not closed? A cell runs over several lines."
+    names = ", ".join(map(header.own, header.columns))
+    return (
+        f"{header.path}: {header.where(row)} has {len(cells)} cell{'s' * (len(cells) != 1)}, expected {width} "
+        f"{'as in the header' if named else 'as in the first line'} ({names}). {hint}"
+    )
+
+
 def no_numbers(header: Header, row: int, column: str, value: Any, kind: str) -> str:
     """The message about a typed column of another type."""
     return (
@@ -29,13 +81,8 @@ def no_numbers(header: Header, row: int, column: str, value: Any, kind: str) -> 
 
 
 def number_of(cell: str, decimal: str = ".") -> float | None:
-    """The number that a text holds, in Polars' spelling of numbers: no thousands separators, no underscores."""
-    if "_" in cell or (decimal == "," and "." in cell):
-        return None
-    try:
-        return float(cell.replace(",", ".") if decimal == "," else cell)
-    except ValueError:
-        return None
+    """The number that a text holds: no thousands separators, no underscores."""
+    return (PLAIN if decimal == "." else Spelling(decimal)).number(cell)
 
 
 def is_decimal_comma(cell: str) -> bool:

@@ -8,6 +8,7 @@ where the study maps them, else the file's.
 from __future__ import annotations
 
 import dataclasses
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,8 +18,15 @@ from typing import Self
 import numpy as np
 import polars as pl
 
+from ulna.formats.places import Places
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
+
+MOST_CELLS = 20
+"""Bad cells that one message names."""
+#: what to do, in messages about a cell: said once where there are several
+_USUAL = re.compile(r"(?<=[.]) (Correct it|Fill it)[^.]*[.]$")
+_EXPECTED = re.compile(r"(?=[,;] expected )")
 
 #: true for the name of a column that holds numbers
 Numeric = Callable[[str], bool]
@@ -49,6 +57,12 @@ class Header(ABC):
     """The file's own name of each column that the study calls otherwise."""
     what: str = field(default="a table", kw_only=True)
     """What is expected of the file, in words."""
+    remarks: list[str] = field(default_factory=list, kw_only=True)
+    """What was passed over or recognised when the file was opened: whoever reads it says so."""
+    labels: Mapping[str, Mapping[str, str]] = field(default_factory=dict, kw_only=True)
+    """Of columns whose cells the study calls otherwise: the file's label → Ulna's name."""
+    units: Mapping[str, str] = field(default_factory=dict, kw_only=True)
+    """What the file itself says of its columns' units, as it is written there: the file's name → "deg"."""
 
     @property
     def head(self) -> str:
@@ -91,6 +105,12 @@ class Header(ABC):
         """How a message calls a cell."""
         return f"{self.where(row)}, {self.named(column)}"
 
+    @property
+    def row_places(self) -> Places | None:
+        """Where data rows stand in the file, as its own program calls them: "line 7", `Messung!A12`; None where rows
+        have no other name than their number."""
+        return None
+
     @abstractmethod
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         """All rows of some columns: Float64 where `numeric` says so, else String. A gap (or NaN, infinity) where a
@@ -131,21 +151,43 @@ class Header(ABC):
         """The frame, if every cell is filled and every number finite; strings without spaces around them.
 
         row: (N,) the rows' numbers in the file; without it they follow each other after the first `before`. blank:
-        columns of names in which cells may be empty (""). Raises UlnaInputError.
+        columns of names in which cells may be empty (""). Labels are those that the study gives them. Raises
+        UlnaInputError naming all bad cells.
         """
         frame = frame.with_columns(pl.col(name).fill_null("") for name in blank if name in frame.columns)
         spaced = [c.name for c in frame if c.dtype == pl.String and bool(c.str.contains(r"^\s|\s$").any())]
         frame = frame.with_columns(pl.col(spaced).str.strip_chars()) if spaced else frame
-        first: tuple[int, str] | None = None
-        for column in frame:
+        said = [name for name in self.labels if name in frame.columns]
+        frame = frame.with_columns(pl.col(name).replace(self.labels[name]) for name in said) if said else frame
+        found: list[tuple[int, int, str]] = []
+        count = 0
+        for k, column in enumerate(frame):
             if column.name in blank:
                 continue
             bad = column.is_null()
             bad |= ~column.is_finite().fill_null(False) if numeric(column.name) else (column == "").fill_null(True)
             if bad.any():
-                index = int(bad.arg_true()[0])
-                first = (index, column.name) if first is None or index < first[0] else first
-        if first is None:
+                count += int(bad.sum())
+                found += [(int(index), k, column.name) for index in bad.arg_true()[:MOST_CELLS]]
+        if not found:
             return frame
-        at = before + first[0] + 1 if row is None else int(row[first[0]])
-        raise UlnaInputError(self.refusal(at, first[1], numeric))
+        told = [
+            self.refusal(before + index + 1 if row is None else int(row[index]), name, numeric)
+            for index, _, name in sorted(found)[:MOST_CELLS]
+        ]
+        raise refused(self, told, count)
+
+
+def refused(header: Header, told: Sequence[str], count: int) -> UlnaInputError:
+    """The error of the messages about the first of `count` bad cells: one by what it is, several in one list."""
+    if count == 1:
+        return UlnaInputError(told[0])
+    start = f"{header.path}: "
+    first, *others = [each.removeprefix(start) for each in told]
+    tail = _EXPECTED.split(first, maxsplit=1)[-1]
+    shortly = [
+        _EXPECTED.split(each, maxsplit=1)[0] if each.endswith(tail) else _USUAL.sub("", each).rstrip(".")
+        for each in others
+    ]
+    more = f"; and {count - len(told)} more" if count > len(told) else ""
+    return UlnaInputError(f"{start}{first} There are {count} such places: also {'; '.join(shortly)}{more}.")

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 import polars as pl
-from pydantic import BeforeValidator, Discriminator, Tag, model_validator
-from pydantic_core import PydanticCustomError
 
+from ulna.formats.conditions import OneOrMore, Range
 from ulna.formats.header import Header
 from ulna.formats.models import Strict
 from ulna.ground.arrays import I64
@@ -24,56 +23,6 @@ Rows = Literal["fit", "check", "all"]
 
 #: values of a column named in a message
 _SHOWN = 8
-
-
-class Range(Strict):
-    """Numbers between two limits, themselves not included."""
-
-    above: float | None = None
-    below: float | None = None
-
-    @model_validator(mode="after")
-    def _some(self) -> Range:
-        low, high = self.above, self.below
-        if (low is None and high is None) or (low is not None and high is not None and not low < high):
-            raise PydanticCustomError("range", "above, below, or both with above the smaller one")
-        return self
-
-
-def _number(value: Any) -> Any:
-    """Neither true nor a date is one."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise PydanticCustomError(
-            "condition", "a text in quotes, a number, a list of these, or limits { above, below }"
-        )
-    return value
-
-
-Number = Annotated[float, BeforeValidator(_number)]
-
-
-def _one_kind(value: Any) -> str:
-    return "<text>" if isinstance(value, str) else "<number>"
-
-
-def _condition_kind(value: Any) -> str:
-    if isinstance(value, dict | Range):
-        return "<range>"
-    return "<list>" if isinstance(value, list) else _one_kind(value)
-
-
-Value = Annotated[Annotated[str, Tag("<text>")] | Annotated[Number, Tag("<number>")], Discriminator(_one_kind)]
-Condition = Annotated[
-    Annotated[str, Tag("<text>")]
-    | Annotated[Number, Tag("<number>")]
-    | Annotated[list[Value], Tag("<list>")]
-    | Annotated[Range, Tag("<range>")],
-    Discriminator(_condition_kind),
-]
-OneOrMore = Annotated[
-    Annotated[str, Tag("<text>")] | Annotated[Number, Tag("<number>")] | Annotated[list[Value], Tag("<list>")],
-    Discriminator(_condition_kind),
-]
 
 
 class SplitTable(Strict):
@@ -163,7 +112,7 @@ class Selection:
 def _nothing(key: str, column: pl.Series, condition: Any, header: Header) -> UlnaInputError:
     there = header.named(column.name)
     has = _values(column)
-    if isinstance(condition, Range):
+    if isinstance(condition, Range) and not (condition.above is None and condition.below is None):
         numbers = header.numbers(column).drop_nans().drop_nulls()
         low, high = numbers.to_numpy().min(initial=np.inf), numbers.to_numpy().max(initial=-np.inf)
         has = f"numbers from {low:g} to {high:g}" if len(numbers) else has
@@ -174,11 +123,20 @@ def _nothing(key: str, column: pl.Series, condition: Any, header: Header) -> Uln
 
 
 def _holds(column: pl.Series, condition: Any, header: Header, kept: pl.Series) -> pl.Series:
-    """(N,) whether a condition holds; an empty cell meets none. Raises UlnaInputError for a cell that should be a
-    number and is none, in a row that meets the conditions before."""
+    """(N,) whether a condition holds; an empty cell meets none but `empty`, `not` and "".
+
+    Raises UlnaInputError for a cell that should be a number and is none, in a row that meets the conditions before.
+    """
     if isinstance(condition, Range):
-        numbers = _numbers(column, header, kept)
-        hits = numbers.is_not_null()
+        hits = pl.Series([True]).new_from_index(0, len(column))
+        if condition.empty is not None:
+            hits &= (column.fill_null("") == "") == condition.empty
+        if condition.excluded is not None:
+            hits &= ~_holds(column, condition.excluded, header, kept & hits)
+        if condition.above is None and condition.below is None:
+            return hits
+        numbers = _numbers(column, header, kept & hits)
+        hits &= numbers.is_not_null()
         if condition.above is not None:
             hits &= (numbers > condition.above).fill_null(False)
         if condition.below is not None:
@@ -187,7 +145,7 @@ def _holds(column: pl.Series, condition: Any, header: Header, kept: pl.Series) -
     values = condition if isinstance(condition, list) else [condition]
     texts = [value for value in values if isinstance(value, str)]
     wanted = [float(value) for value in values if not isinstance(value, str)]
-    hits = column.is_in(texts).fill_null(False)
+    hits = column.fill_null("").is_in(texts)
     if wanted:
         compared = kept & ~hits & (not texts)  # beside texts, what is no number is another text
         hits |= _numbers(column, header, compared).is_in(wanted).fill_null(False)
@@ -210,7 +168,10 @@ def _numbers(column: pl.Series, header: Header, kept: pl.Series) -> pl.Series:
 def _shown(condition: Any) -> str:
     if isinstance(condition, Range):
         limits = {"above": condition.above, "below": condition.below}
-        return " and ".join(f"{word} {limit:g}" for word, limit in limits.items() if limit is not None)
+        said = [f"{word} {limit:g}" for word, limit in limits.items() if limit is not None]
+        said += [] if condition.excluded is None else [f"not {_shown(condition.excluded)}"]
+        said += [] if condition.empty is None else ["an empty cell" if condition.empty else "a filled cell"]
+        return " and ".join(said)
     values = condition if isinstance(condition, list) else [condition]
     return " or ".join(f"'{value}'" if isinstance(value, str) else f"{value:g}" for value in values)
 

@@ -13,8 +13,11 @@ from ulna.ground.errors import UlnaInputError
 def remark_strange(
     header: Header, known: Sequence[str], words: Sequence[str], remarks: list[str], asked: Collection[str] = ()
 ) -> None:
-    """Remark upon the columns that nobody uses. Raises UlnaInputError for one whose name is nearly one of `words`, if
-    that is not there: a slip, most likely."""
+    """Remark upon the columns that nobody uses, and hand on what was remarked when the file was opened.
+
+    Raises UlnaInputError for a column whose name is nearly one of `words`, if that is not there: a slip, most likely.
+    """
+    remarks += [remark for remark in header.remarks if remark not in remarks]
     strange = [column for column in header.columns if column not in known and column not in asked]
     lacking = [name for name in words if name not in header.columns]
     for column in strange:

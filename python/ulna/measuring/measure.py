@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -57,10 +57,16 @@ def measure(
     encoder_u_rad: F64 | None = None,
     separator: str | None = None,
     decimal: str | None = None,
-    header: bool = True,
+    thousands: str | None = None,
+    encoding: str | None = None,
+    comment: str | None = None,
+    header: bool | int = True,
+    units_row: bool | None = None,
+    fill_down: Sequence[str] = (),
     sheet: str | None = None,
     dataset: str | None = None,
     columns: Mapping[str, str] | None = None,
+    names: Mapping[str, Mapping[str, str | Sequence[str]]] | None = None,
     temperature_c: float | None = None,
     covariance: bool = False,
     force: bool = False,
@@ -71,8 +77,8 @@ def measure(
 
     `arm`: an arm, an arm file or a result. With a result come standard uncertainties: of the calibration, and of the
     encoders where the study stated their noise (or `encoder_u_rad`, (n,), does).
-    `separator`, `decimal`, `header`, `sheet`, `dataset`, `columns`: how the file is written, as in a study's
-    ``[[readings]]``.
+    `separator`, `decimal`, `thousands`, `encoding`, `comment`, `header`, `units_row`, `fill_down`, `sheet`, `dataset`,
+    `columns`, `names`: how the file is written, as in a study's ``[[readings]]``.
     `temperature_c`: of all readings, °C, where the arm's links grow with it and the file has no column ``temperature``.
     `covariance`: with a result, also the columns ``c_xy, c_xz, c_yz``, what is beside the diagonal of each point's
     covariance matrix, in the square of the unit; the diagonal is u².
@@ -80,7 +86,18 @@ def measure(
     Raises UlnaInputError naming the first bad cell; KeyboardInterrupt leaves nothing behind.
     """
     layout = Layout.of_options(
-        columns, separator=separator, decimal=decimal, header=header, sheet=sheet, dataset=dataset
+        columns,
+        names,
+        separator=separator,
+        decimal=decimal,
+        thousands=thousands,
+        encoding=encoding,
+        comment=comment,
+        header=header,
+        units_row=units_row,
+        fill_down=tuple(fill_down),
+        sheet=sheet,
+        dataset=dataset,
     )
     job = MeasureJob(arm, Path(readings), probe, angle, units, encoder_u_rad, layout, temperature_c, covariance)
     table = path = None

@@ -33,7 +33,8 @@ def _one(entry: Mapping[str, Any]) -> str:
     names = [entry["artefact"], f"placement {entry['placement']}"]
     names += [entry["feature"]] if "feature" in entry else []
     counted = "" if "counted" not in entry else f", counted {entry['counted']:.2g}"
+    place = f" ({entry['place']})" if "place" in entry else ""
     return (
-        f"row {entry['row']} of {entry['file']} ({', '.join(names)}): {figure_mm(entry['norm_mm'])} mm, "
+        f"row {entry['row']}{place} of {entry['file']} ({', '.join(names)}): {figure_mm(entry['norm_mm'])} mm, "
         f"{entry['times_scatter']:.3g} times the scatter{counted}"
     )

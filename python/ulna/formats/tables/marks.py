@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from ulna.formats.encodings import utf16
+
 PARQUET = b"PAR1"
 ZIP = b"PK\x03\x04"
 OLD_OFFICE = b"\xd0\xcf\x11\xe0"
 """Of Microsoft's programs until 2003, and of what has a password."""
-UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 #: a file may begin with a block of somebody else's, of one of these lengths; MATLAB writes 512 bytes
@@ -24,5 +25,5 @@ def is_mat(start: bytes) -> bool:
 
 
 def is_text(start: bytes) -> bool:
-    """The same of text; UTF-16 is, to be told as what it is."""
-    return b"\x00" not in start or start.startswith(UTF16)
+    """The same of text: UTF-16 is, and a text behind which zeros fill a block."""
+    return b"\x00" not in start.rstrip(b"\x00") or utf16(start) is not None

@@ -16,10 +16,11 @@ from typing import Any, NoReturn
 import polars as pl
 import polars.exceptions
 
-from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
-from ulna.formats.header import Header, Numeric, Piece
+from ulna.formats.cells import number_of, text_cell, wrong_count
+from ulna.formats.header import MOST_CELLS, Header, Numeric, Piece, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.tables.marks import UTF16
+from ulna.formats.places import Places
+from ulna.formats.tables.lines import LineTable, open_lines, untidy
 from ulna.ground.errors import UlnaInputError
 
 _BLOCK_BYTES = 1 << 20
@@ -42,6 +43,10 @@ class TextTable(Header):
 
     def where(self, row: int) -> str:
         return f"row {row} (line {row + self.lines} of the file)"
+
+    @property
+    def row_places(self) -> Places:
+        return Places("line {}", self.lines)
 
     # ------------------------------------------------------------ all rows at once
 
@@ -90,6 +95,7 @@ class TextTable(Header):
         if self.decimal == ",":
             pointed = texts.str.contains(".", literal=True).fill_null(False)
             texts = texts.set(pointed, None).str.replace(",", ".", literal=True)
+        texts = texts.str.replace("\u2212", "-", literal=True).str.replace(r"([0-9.])[dD]([+-]?[0-9]+)$", "${1}e$2")
         return texts.cast(pl.Float64, strict=False)
 
     # ------------------------------------------------------------ piece by piece
@@ -156,49 +162,39 @@ class TextTable(Header):
         return self._refusal(row, column, cells[self.columns.index(column)], numeric)
 
     def _refusal(self, row: int, column: str, cell: str, numeric: Numeric) -> str:
-        at = f"{self.path}: {self.at(row, column)}"
-        if numeric(column) and self.decimal == "." and is_decimal_comma(cell):
-            say = "" if self.separator == "," else f"Say {self.layout.say('decimal', ',')}, or export"
-            return (
-                f"{at}: got '{cell}', a decimal comma; expected a number with a decimal point. {say or 'Export'} the "
-                "table again so."
-            )
-        pointed = "." in cell and number_of(cell.replace(".", ""), ",") is not None
-        if numeric(column) and self.decimal == "," and pointed:
-            return (
-                f"{at}: got '{cell}', with a point; expected a number with a decimal comma "
-                f"({self.layout.key('decimal')}). Correct the key, or export the table again without points between "
-                "thousands."
-            )
-        if numeric(column) and row == 1 and not self.lines and cell.strip():
-            return (
-                f"{at}: got '{cell[:60]}', expected a number, because the file is said to have no header "
-                f"({self.layout.key('header')}). Correct the cell, or remove that where this is the header."
-            )
-        return bad_cell(self, row, column, cell, numeric, self.decimal)
+        return text_cell(self, row, column, cell, numeric, self.layout, not self.lines and row == 1)
 
     def _walk(self, numeric: Numeric, columns: Sequence[str]) -> int:
         """Go through the file cell by cell; the number of data rows, blank lines at the end not counted. Raises
-        UlnaInputError for the first line that is no row, and the first bad cell of `columns`."""
+        UlnaInputError for lines that are no row, and bad cells of `columns`."""
         checked = [(k, name, numeric(name)) for k, name in enumerate(self.columns) if name in columns]
-        row, last = 0, 0
+        row, last, count = 0, 0, 0
+        told: list[str] = []
         try:
             with self.path.open(encoding="utf-8-sig", newline="") as stream:
                 reader = csv.reader(stream, delimiter=self.separator)
                 for row, cells in enumerate(islice(reader, self.lines, None), start=1):
                     if not cells:
                         continue
+                    found: list[str] = []
                     if last != row - 1:
-                        raise UlnaInputError(
+                        found.append(
                             f"{self.path}: {self.where(last + 1)} is blank; expected a reading. Remove the line."
                         )
                     last = row
                     if len(cells) != len(self.columns):
-                        self._wrong_count(row, cells, sum(map(numeric, self.columns)))
-                    for k, name, is_number in checked:
-                        value = number_of(cells[k], self.decimal) if is_number else 0.0
-                        if value is None or value - value != 0.0 or not cells[k].strip():
-                            raise UlnaInputError(self._refusal(row, name, cells[k], numeric))
+                        found.append(wrong_count(self, row, cells, len(self.columns), self.separator, bool(self.lines)))
+                    else:
+                        bad = [
+                            (name, cells[k])
+                            for k, name, is_number in checked
+                            if _is_bad(cells[k], number_of(cells[k], self.decimal) if is_number else 0.0)
+                        ]
+                        count += len(bad)
+                        bad = bad[: MOST_CELLS - len(told)]
+                        told += [self._refusal(row, name, cell, numeric) for name, cell in bad]
+                    count += len(found)
+                    told += found[: MOST_CELLS - len(told)]
         except UnicodeDecodeError as error:
             raise UlnaInputError(
                 f"{self.path}: the file is not UTF-8 text (byte 0x{error.object[error.start]:02x}); expected "
@@ -210,43 +206,24 @@ class TextTable(Header):
             raise UlnaInputError(
                 f"{self.path}: {self.where(row + 1)}: {what}; expected {self.what}. Correct it."
             ) from None
+        if told:
+            raise refused(self, told, count)
         return last
-
-    def _wrong_count(self, row: int, cells: list[str], numbers: int) -> NoReturn:
-        hint = "Correct the row."
-        if self.separator == "," and len(cells) >= len(self.columns) + numbers // 2 and numbers > 1:
-            hint = "Are these decimal commas? Write numbers with a decimal point."
-        elif len(cells) == 1 and self.separator != ";" and ";" in cells[0]:
-            hint = (
-                f"Are the columns separated by semicolons? Write '{self.separator}' between them and points in numbers."
-            )
-        elif any("\n" in cell for cell in cells):
-            hint = "Is a quotation mark not closed? A cell runs over several lines."
-        count = f"{len(cells)} cell{'s' * (len(cells) != 1)}"
-        as_in = "as in the header" if self.lines else "as in the first line"
-        raise UlnaInputError(
-            f"{self.path}: {self.where(row)} has {count}, expected {len(self.columns)} {as_in} "
-            f"({', '.join(self.own(column) for column in self.columns)}). {hint}"
-        )
 
     def _unreadable(self, error: Exception) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}. Correct it.") from None
 
 
-def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
+def _is_bad(cell: str, value: float | None) -> bool:
+    return value is None or value - value != 0.0 or not cell.strip()
+
+
+def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
     """A CSV file by its first bytes. Raises UlnaInputError for what is no text, or not written as the layout says."""
-    if start.startswith(UTF16):
-        raise UlnaInputError(f"{path}: the file is UTF-16; expected {what} in UTF-8. Save it as UTF-8.")
-    try:
-        line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
-    except UnicodeDecodeError:
-        raise UlnaInputError(f"{path}: line 1 is not UTF-8 text; expected {what}. Save it as UTF-8.") from None
-    if "\r" in line:
-        raise UlnaInputError(
-            f"{path}: the lines end with a lone carriage return; expected a line feed (or both). "
-            "Save the table again with Unix or Windows line ends."
-        )
+    if untidy(path, start, layout):
+        return _looked_at(open_lines(path, what, layout))
+    line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
     separator = layout.separator or ","
     _check_separator(path, line, separator, layout)
     names = [name.strip() for name in next(csv.reader([line], delimiter=separator), [""])]
@@ -263,14 +240,21 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> TextTable:
     )
 
 
-def _check_separator(path: Path, line: str, separator: str, layout: Layout) -> None:
+def _looked_at(table: LineTable) -> LineTable:
+    """The same. Raises UlnaInputError where its header shows another separator than it was read with."""
+    if len(table.columns) == 1 and table.header_line:
+        _check_separator(table.path, table.columns[0], table.separator, table.layout, table.head)
+    return table
+
+
+def _check_separator(path: Path, line: str, separator: str, layout: Layout, at: str = "line 1") -> None:
     """Another separator in the first line, and none of the expected ones, is told with the key that would say so."""
     if separator in line:
         return
     if separator != ",":
         there = next((words for other, words in {",": "commas", **_NAMES}.items() if other in line), None)
         raise UlnaInputError(
-            f"{layout.key('separator')}: got {separator!r}, but line 1 of {path} has none"
+            f"{layout.key('separator')}: got {separator!r}, but {at} of {path} has none"
             f"{f', it has {there}' if there else ''}; expected the sign between its columns. Correct it."
         )
     for other, words in _NAMES.items():
@@ -279,6 +263,6 @@ def _check_separator(path: Path, line: str, separator: str, layout: Layout) -> N
             comma = f" (and {decimal} where numbers have decimal commas)" if other == ";" else ""
             key = layout.say("separator", "tab" if other == "\t" else other)
             raise UlnaInputError(
-                f"{path}: line 1: the columns are separated by {words}; expected commas, and numbers with a decimal "
+                f"{path}: {at}: the columns are separated by {words}; expected commas, and numbers with a decimal "
                 f"point. Say {key}{comma}, or export the table again with commas between columns and points in numbers."
             )

@@ -18,51 +18,45 @@ import polars as pl
 from python_calamine import CalamineError, CalamineSheet, CalamineWorkbook, SheetTypeEnum
 
 from ulna.formats.cells import bad_cell, is_decimal_comma, number_of
-from ulna.formats.header import Header, Numeric
+from ulna.formats.header import Numeric
 from ulna.formats.layout import Layout
+from ulna.formats.places import Places
+from ulna.formats.tables.grid import GridTable, lay_out
+from ulna.formats.tables.heads import is_blank
 from ulna.formats.tables.marks import OLD_OFFICE
-from ulna.formats.tables.workbook_cell import address, stored_cell
+from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
 from ulna.ground.errors import UlnaInputError, nearest
 
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
 
 
 @dataclass(frozen=True)
-class SheetTable(Header):
+class SheetTable(GridTable):
     """One sheet of a workbook, read whole."""
 
     sheet: str
-    lines: int
-    """Rows of the header; 0 where the sheet has none."""
-    grid: list[list[Any]] = field(repr=False)
-    """Cells of each data row, from column A on; "" where empty."""
-    places: list[int] = field(repr=False)
-    """Where each column stands in `grid`: columns that are all blank are passed over."""
     merged: list[tuple[tuple[int, int], tuple[int, int]]] = field(repr=False)
     """First and last cell (row, column from 0) of merged ones."""
 
     @property
     def head(self) -> str:
-        return f"row 1 of sheet '{self.sheet}'"
-
-    @property
-    def rows(self) -> int:
-        return len(self.grid)
+        return f"row {self.header_line or 1} of sheet '{self.sheet}'"
 
     def where(self, row: int) -> str:
-        return f"row {row} (row {row + self.lines} of sheet '{self.sheet}')"
+        return f"row {row} (row {self.lines[row - 1]} of sheet '{self.sheet}')"
 
     def at(self, row: int, column: str) -> str:
-        return f"row {row} ({self._cell(row, column)}), {self.named(column)}"
+        cell = address(self.sheet, self.lines[row - 1] - 1, self.places[self.columns.index(column)])
+        return f"row {row} ({cell}), {self.named(column)}"
 
-    def _cell(self, row: int, column: str) -> str:
-        return address(self.sheet, row + self.lines - 1, self.places[self.columns.index(column)])
+    @property
+    def row_places(self) -> Places:
+        return Places(address(self.sheet, 0, self.places[0]).removesuffix("1") + "{}", self.lines)
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         found = []
         for name in columns:
-            k = self.places[self.columns.index(name)]
-            values = [row[k] if k < len(row) else "" for row in self.grid]
+            values = self.values(name)
             if numeric(name):
                 plain = [value if type(value) in (int, float) else None for value in values]
                 found.append(pl.Series(name, plain, dtype=pl.Float64))
@@ -71,12 +65,11 @@ class SheetTable(Header):
         return pl.DataFrame(found)
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
-        line, k = row + self.lines - 1, self.places[self.columns.index(column)]
-        cells = self.grid[row - 1]
-        value: Cell = cells[k] if k < len(cells) else ""
+        line, k = self.lines[row - 1] - 1, self.places[self.columns.index(column)]
+        value: Cell = self.value(row, column)
         at = f"{self.path}: {self.at(row, column)}"
         kind = "number" if numeric(column) else "name"
-        if _blank(value):
+        if is_blank(value):
             formula, text = stored_cell(self.path, self.sheet, address("", line, k))
             if text.startswith("#"):
                 return f"{at}: got the error {text}; expected a {kind}. Correct what it comes from, or remove the row."
@@ -105,10 +98,6 @@ class SheetTable(Header):
         return bad_cell(self, row, column, str(_name(value) or ""), numeric)
 
 
-def _blank(value: Cell) -> bool:
-    return isinstance(value, str) and not value.strip()
-
-
 def _name(value: Cell) -> str | None:
     """A cell as a label: 3 and not 3.0, as it is shown and as it would be in a CSV file."""
     if isinstance(value, bool):
@@ -127,6 +116,12 @@ def open_workbook(path: Path, start: bytes, what: str, layout: Layout) -> SheetT
         workbook = CalamineWorkbook.from_path(path)
         names = [each.name for each in workbook.sheets_metadata if each.typ == SheetTypeEnum.WorkSheet]
         name = _chosen(names, path, layout)
+        far = far_cell(path, name)
+        if far is not None:
+            raise UlnaInputError(
+                f"{path}: {address(name, 0, 0)[:-2]}{far} holds something far from all else, with millions of empty "
+                f"cells between; expected {what}. Clear that cell, or copy the table to a sheet of its own."
+            )
         sheet = workbook.get_sheet_by_name(name)
         return _table(path, sheet, sheet.to_python(skip_empty_area=False), layout)
     except CalamineError as error:
@@ -181,38 +176,49 @@ def _chosen(names: list[str], path: Path, layout: Layout) -> str:
 
 
 def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layout) -> SheetTable:
-    while grid and all(map(_blank, grid[-1])):  # rows that were cleared, or only have a colour
+    while grid and all(map(is_blank, grid[-1])):  # rows that were cleared, or only have a colour
         grid.pop()
     if not grid:
         raise UlnaInputError(f"{path}: sheet '{sheet.name}' is empty; expected a table. Name another sheet or file.")
-    lines = int(layout.header)
-    used = [k for k in range(max(map(len, grid))) if any(k < len(row) and not _blank(row[k]) for row in grid)]
-    names = [(_name(grid[0][k]) or "").strip() if k < len(grid[0]) else "" for k in used]
-    if lines and not any(names):
-        raise UlnaInputError(
-            f"{path}: row 1 of sheet '{sheet.name}' is blank; expected the names of the columns there. Remove the rows "
-            "above them."
-        )
-    for k, name in zip(used, names, strict=True):
-        if lines and not name:
-            line = next(line for line, row in enumerate(grid) if not _blank(row[k]))
-            raise UlnaInputError(
-                f"{path}: {address(sheet.name, line, k)}: got '{str(grid[line][k])[:40]}' in a column without a name; "
-                "expected a name in row 1 for every column. Name the column, clear the cell, or remove what stands "
-                "above the header."
-            )
-    for line, row in enumerate(grid[lines:], start=lines):
-        if _blank(row[used[0]]) and all(map(_blank, row)):
-            raise UlnaInputError(
-                f"{path}: row {line + 1 - lines} (row {line + 1} of sheet '{sheet.name}') is blank; expected a "
-                "reading. Remove the row."
-            )
+    merged = list(sheet.merged_cell_ranges or ())
+    remarks = _fill_merged(grid, merged, sheet.name)
+    lines = list(range(1, len(grid) + 1))
+    grid = [[_name(cell) if isinstance(cell, bool) else cell for cell in row] for row in grid]
+    laid = lay_out(
+        path,
+        grid,
+        lines,
+        layout,
+        lambda line: f"row {line} of sheet '{sheet.name}'",
+        lambda line, k: address(sheet.name, line - 1, k),
+    )
+    names = laid.names if laid.header_line else [f"c{k + 1}" for k in laid.places]
     return SheetTable(
         path,
-        names if lines else [f"c{k + 1}" for k in used],
+        names,
         sheet=sheet.name,
-        lines=lines,
-        grid=grid[lines:],
-        places=used,
-        merged=list(sheet.merged_cell_ranges or ()),
+        lines=laid.lines,
+        grid=laid.grid,
+        places=laid.places,
+        header_line=laid.header_line,
+        units=laid.units,
+        remarks=[f"{path}: {remark}" for remark in [*remarks, *laid.remarks]],
+        merged=merged,
     )
+
+
+def _fill_merged(grid: list[list[Any]], merged: list[tuple[tuple[int, int], tuple[int, int]]], sheet: str) -> list[str]:
+    """What stands in merged cells stands in each row of them: only the first has it in the file. Rows that are merged
+    across columns are titles, and are left."""
+    found = []
+    for (top, left), (bottom, right) in sorted(merged):
+        if left != right or top >= len(grid) or left >= len(grid[top]) or is_blank(grid[top][left]):
+            continue
+        for row in grid[top + 1 : bottom + 1]:
+            row += [""] * (left + 1 - len(row))
+            row[left] = grid[top][left]
+        found.append(f"{address('', top, left)}:{address('', bottom, left)}")
+    if not found:
+        return []
+    shown = ", ".join(found[:8]) + (f", … ({len(found)} in all)" if len(found) > 8 else "")
+    return [f"sheet '{sheet}': what stands in merged cells counts for each of their rows: {shown}."]

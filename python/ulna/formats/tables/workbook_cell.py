@@ -14,6 +14,12 @@ from pathlib import Path
 
 _ID = "{http://schemas.openxmlformats.org/officeDocument/2006/relationships}id"
 
+_CHUNK = 1 << 20
+_MOST_CELLS = 30_000_000
+"""Cells of a span that are read, however few of them hold anything: about 1 GB."""
+_WIDE = re.compile(rb'<c [^>]*?\br="([A-Z]{2,3}[0-9]{1,7})"')
+_ANY = re.compile(rb'<c [^>]*?\br="([A-Z]{1,3}[0-9]{1,7})"')
+
 
 def address(sheet: str, row: int, column: int) -> str:
     """`Sheet1!C7`, counted from 0; without the sheet `C7`. A sheet's name is in quotes where Excel writes them."""
@@ -43,6 +49,41 @@ def stored_cell(path: Path, sheet: str, reference: str) -> tuple[str | None, str
     except (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, OSError, RuntimeError, StopIteration):
         pass
     return None, ""
+
+
+def far_cell(path: Path, sheet: str) -> str | None:
+    """The cell because of which a sheet spans far more than it holds, such as XFD1048576; None where none does, or the
+    file is not built as expected. Whoever reads the whole span would need memory for all that lies between."""
+    count, last, widest, row = 0, b"", b"A1", 0
+    try:
+        with zipfile.ZipFile(path) as archive, archive.open(_part(archive, sheet)) as stream:
+            rest = b""
+            while chunk := stream.read(_CHUNK):
+                chunk = rest + chunk
+                end = chunk.rfind(b"<") if len(chunk) < 2 * _CHUNK else len(chunk)
+                chunk, rest = chunk[:end], chunk[end:]
+                count += chunk.count(b"<c ")
+                for found in _WIDE.finditer(chunk):  # rare: beyond column Z
+                    widest = max(widest, found[1], key=_column)
+                    last = found[1]
+                at = chunk.rfind(b"<c ")
+                match = _ANY.search(chunk, at) if at >= 0 else None
+                last = match[1] if match else last
+                row = max(row, int(re.sub(rb"[A-Z]", b"", last) or b"0"))
+    except (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, OSError, RuntimeError, StopIteration):
+        return None
+    span = row * max(_column(widest), 26)
+    if span < _MOST_CELLS or 20 * count > span:
+        return None
+    return (widest if _column(widest) > 26 else last).decode()
+
+
+def _column(reference: bytes) -> int:
+    """The number of a cell's column, from 1."""
+    number = 0
+    for letter in reference.rstrip(b"0123456789"):
+        number = 26 * number + letter - ord("A") + 1
+    return number
 
 
 def _part(archive: zipfile.ZipFile, sheet: str) -> str:

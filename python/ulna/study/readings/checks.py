@@ -21,6 +21,12 @@ from ulna.formats.wording import SHOWN, counted, rows_named
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
+_UNIT_WORDS = {
+    **dict.fromkeys(("rad", "radian", "radians", "弧度"), "rad"),
+    **dict.fromkeys(("deg", "°", "degree", "degrees", "度"), "deg"),
+    **dict.fromkeys(("counts", "count", "cnt", "inc", "pulses"), "counts"),
+}
+
 
 def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
     """The probe that a file's key names; the arm's only one where it names none. Raises UlnaInputError."""
@@ -47,6 +53,7 @@ def check_scale(
     one joint is beyond, and is one that goes all the way round, it has counted turns: no matter of units, for those are
     the same for all joints, but remarked upon (`Outside`).
     """
+    _check_own_units(header, [f"{letter}{k + 1}" for k in range(len(factors))], unit, remedy)
     farthest_rad = np.abs(q_rad).max(axis=0)
     beyond = [k for k, joint in enumerate(arm.joints) if farthest_rad[k] > joint.most_rad]
     if not beyond or (len(beyond) == 1 and arm.joints[beyond[0]].goes_round):
@@ -65,6 +72,18 @@ def check_scale(
         f"more than two turns; expected {expected}. Are these {asked}? {remedy} If joint {k + 1} does turn that far, "
         "say so in the arm file: endless = true, or limits."
     )
+
+
+def _check_own_units(header: Header, columns: list[str], unit: str, remedy: str) -> None:
+    """What the file itself says of its units is what the study says. Raises UlnaInputError."""
+    for column in columns:
+        said = header.units.get(header.own(column), "")
+        own = _UNIT_WORDS.get(said.casefold(), unit)  # what is no unit of angles says nothing of them
+        if own != unit:
+            raise UlnaInputError(
+                f"{header.path}: {header.named(column)}: the file says '{said}', but its angles are said to be in "
+                f"{unit}; expected the same. {remedy}"
+            )
 
 
 def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:

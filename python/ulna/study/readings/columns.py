@@ -13,9 +13,10 @@ import polars as pl
 from pydantic import Field
 
 from ulna.artefacts.kinds import KINDS
+from ulna.formats.conditions import Condition
 from ulna.formats.header import Header
 from ulna.formats.layout import TableKeys
-from ulna.formats.rows import Condition, SplitTable
+from ulna.formats.rows import SplitTable
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
@@ -115,7 +116,7 @@ class ReadingsEntry(TableKeys):
     """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
     be said), or the order of the rows: the sign of each encoder's last change."""
     where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
-    """Filter: column = what it must hold. A text, a number, a list of these, or limits `{ above, below }`."""
+    """Filter: column = what it must hold. A text, a number, a list of these, or `{ above, below, not, empty }`."""
     split: SplitTable | None = None
     """Which rows are fitted and which are kept to check the fit."""
 

@@ -60,7 +60,7 @@ def read_readings(
         own = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
         part = frame if len(own) == len(frame) else frame[own]
         parts.append(_part(part, row[own], chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), rows)
+    return parts, InputFile(path, file_sha256(path), rows, header.row_places)
 
 
 def _table(
