@@ -197,6 +197,7 @@ impl Fitted {
             None => "",
             Some(SearchReason::Asked) => "asked",
             Some(SearchReason::PoorMinimum) => "poor-minimum",
+            Some(SearchReason::Unexplained) => "unexplained",
         }
     }
 

@@ -103,6 +103,10 @@ impl Readings for Parts {
         self.all(|part| part.mirror_free())
     }
 
+    fn still_free(&self) -> bool {
+        self.all(|part| part.still_free())
+    }
+
     fn probes_used(&self, probes: usize) -> Vec<bool> {
         let each: Vec<Vec<bool>> = self.0.iter().map(|part| part.readings.probes_used(probes)).collect();
         (0..probes).map(|probe| each.iter().any(|used| used[probe])).collect()

@@ -42,6 +42,9 @@ pub(super) trait Observed<const C: usize>: std::fmt::Debug + Clone + Send + Sync
     /// See [`Readings::mirror_free`].
     fn mirror_free(&self) -> bool;
 
+    /// See [`Readings::still_free`].
+    fn still_free(&self, group: &Group) -> bool;
+
     /// See [`Readings::weigh`].
     fn weigh(&mut self, group: &Group, at: At, noise: Option<&Noise>, how: Weighing);
 
@@ -150,6 +153,10 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
 
     fn mirror_free(&self) -> bool {
         self.kind.mirror_free()
+    }
+
+    fn still_free(&self) -> bool {
+        self.kind.still_free(&self.group)
     }
 
     fn probes_used(&self, probes: usize) -> Vec<bool> {

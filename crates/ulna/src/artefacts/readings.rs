@@ -41,6 +41,9 @@ pub trait Readings: Debug + Send + Sync {
     /// Whether the mirror image of the arm explains them as well.
     fn mirror_free(&self) -> bool;
 
+    /// Whether a tip that never moves explains them as well: nothing about them is a distance between places of the tip.
+    fn still_free(&self) -> bool;
+
     /// For each probe, whether it took any of them.
     fn probes_used(&self, probes: usize) -> Vec<bool>;
 

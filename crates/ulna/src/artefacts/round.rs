@@ -49,4 +49,7 @@ impl<F: Figure<U>, const U: usize> Shape<U> for Round<F> {
     fn scale_free(&self, sizes: &[Known], balls_mm: &[f64]) -> bool {
         sizes[0] == Known::Freely && balls_mm.windows(2).all(|pair| pair[0] == pair[1])
     }
+    fn still_free(&self, _: &[Known]) -> bool {
+        true
+    }
 }

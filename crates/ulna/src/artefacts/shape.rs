@@ -30,4 +30,7 @@ pub(super) trait Shape<const U: usize>: std::fmt::Debug + Clone + Send + Sync + 
 
     /// Whether nothing about it, touched with these balls, is a known length.
     fn scale_free(&self, sizes: &[Known], balls_mm: &[f64]) -> bool;
+
+    /// Whether a tip that never moves meets it: whatever is touched passes through such a tip.
+    fn still_free(&self, sizes: &[Known]) -> bool;
 }

@@ -78,6 +78,17 @@ impl<S: Shape<U>, const U: usize> Surface<S, U> {
         self.measured_mm.get(row).copied().unwrap_or(0.0)
     }
 
+    /// What a fit may do with each size.
+    fn known(&self, group: &Group) -> Vec<Known> {
+        let known = |size: usize| match self.unknown.iter().position(|&unknown| unknown == size) {
+            None => Known::Held(self.sizes[size]),
+            Some(k) if group.dimensions[k].is_free() => Known::Freely,
+            Some(k) if group.dimensions[k].fitted => Known::Within,
+            Some(k) => Known::Held(group.dimensions[k].value),
+        };
+        (0..self.sizes.len()).map(known).collect()
+    }
+
     fn balls_used(&self, group: &Group) -> Vec<f64> {
         let used = group.touches.probes_used(self.balls_mm.len());
         self.balls_mm.iter().zip(used).filter(|(_, used)| *used).map(|(&ball, _)| ball).collect()
@@ -106,14 +117,11 @@ impl<S: Shape<U>, const U: usize> Observed<1> for Surface<S, U> {
     }
 
     fn scale_free(&self, group: &Group) -> bool {
-        let known = |size: usize| match self.unknown.iter().position(|&unknown| unknown == size) {
-            None => Known::Held(self.sizes[size]),
-            Some(k) if group.dimensions[k].is_free() => Known::Freely,
-            Some(k) if group.dimensions[k].fitted => Known::Within,
-            Some(k) => Known::Held(group.dimensions[k].value),
-        };
-        let known: Vec<Known> = (0..self.sizes.len()).map(known).collect();
-        self.shape.scale_free(&known, &self.balls_used(group))
+        self.shape.scale_free(&self.known(group), &self.balls_used(group))
+    }
+
+    fn still_free(&self, group: &Group) -> bool {
+        self.shape.still_free(&self.known(group))
     }
 
     fn growing(&self, group: &Group, at: At) -> Vec<f64> {

@@ -9,3 +9,4 @@ pub mod symmetry;
 mod search;
 mod settle;
 mod signs;
+mod way;

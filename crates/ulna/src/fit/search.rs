@@ -3,8 +3,10 @@
 //! A well-scaled Levenberg-Marquardt reaches it from about every third start with no knowledge of the zero offsets at
 //! all (MODEL section 5), so some tens of starts are enough. They run on a thin selection of the readings.
 
-use crate::arm::Unit;
+use crate::arm::{JointModel, Unit};
+use crate::artefacts::Weighing;
 use crate::error::{Error, Result};
+use crate::fit::symmetry::{Freedom, mirror_image};
 use crate::kinematics::encoder_jacobian;
 use crate::monitor::{Monitor, Stage};
 use crate::problem::Problem;
@@ -68,6 +70,9 @@ const AGREEING_POOR: usize = 40;
 /// Costs that differ by less than this part belong to the same minimum: starts are given up before the last digits.
 const SAME_MINIMUM: f64 = 1e-4;
 
+/// A start does better that leaves less by this part.
+const BETTER: f64 = 0.01;
+
 /// A minimum that leaves so small a part of what the next best of several leaves is the arm: no accident comes so near.
 const FAR_BETTER: f64 = 1e-4;
 const SEVERAL: usize = 10;
@@ -80,29 +85,100 @@ pub(crate) fn search(
     plan: Plan,
     monitor: &dyn Monitor,
 ) -> Result<Searched> {
-    let thin = problem.for_search(READINGS);
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(plan.seed);
-    let sizeless = pins.iter().any(|p| p.kind == Kind::Growth);
-    if !sizeless {
-        return search_over(thin, free, pins, given, plan, monitor, |thin, attempt, x| {
+    let mut starts = 0;
+    if !may_collapse(problem, pins) {
+        let found = search_over(problem.for_search(READINGS), free, pins, given, plan, monitor, |thin, attempt, x| {
             throw(thin, free, plan.throw.width(attempt), x, &mut rng);
-        });
+        })?;
+        if !collapsed(problem, &at(problem, free, &found.x)) {
+            return better_image(problem, free, pins, found, monitor);
+        }
+        starts = found.starts;
     }
-    // with no length known, most starts end in arms that shrink to a point: the links keep theirs while zero offsets are sought
+    // where an arm that shrinks explains the readings, or nearly, starts end in one: the links keep their lengths while
+    // zero offsets are sought
     let units = problem.arm().parameter_units();
     let joints = problem.arm().joint_parameter_count();
     let sought = |k: &usize| units[free[*k]] == Unit::Rad || free[*k] >= joints;
     let part: Vec<usize> = (0..free.len()).filter(sought).collect();
     let part_free: Vec<usize> = part.iter().map(|&k| free[k]).collect();
     let part_given: Vec<f64> = part.iter().map(|&k| given[k]).collect();
-    let found = search_over(thin, &part_free, &[], &part_given, plan, monitor, |thin, attempt, x| {
-        throw(thin, &part_free, plan.throw.width(attempt), x, &mut rng);
-    })?;
+    let found =
+        search_over(problem.for_search(READINGS), &part_free, &[], &part_given, plan, monitor, |thin, attempt, x| {
+            throw(thin, &part_free, plan.throw.width(attempt), x, &mut rng);
+        })?;
     let mut x = given.to_vec();
     for (&k, value) in part.iter().zip(found.x) {
         x[k] = value;
     }
-    Ok(Searched { x, ..found })
+    better_image(problem, free, pins, Searched { x, starts: starts + found.starts, ..found }, monitor)
+}
+
+/// All parameters, the free ones as they are here.
+fn at(problem: &Problem, free: &[usize], x: &[f64]) -> Vec<f64> {
+    let mut parameters = problem.parameters();
+    free.iter().zip(x).for_each(|(&j, &value)| parameters[j] = value);
+    parameters
+}
+
+/// Lengths do not tell an arm from its mirror image, but a search goes by them where it can: whichever of the two explains
+/// the readings as they are.
+pub(crate) fn better_image(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    found: Searched,
+    monitor: &dyn Monitor,
+) -> Result<Searched> {
+    if problem.mirror_free() {
+        return Ok(found);
+    }
+    let whole = as_they_are(problem, &found.signs);
+    let mut is_free = vec![false; whole.parameter_count()];
+    free.iter().for_each(|&j| is_free[j] = true);
+    let freedom =
+        Freedom { free: &is_free, base_free: problem.base_free(), mirror_free: true, zero_offsets_unknown: true };
+    let parameters = at(&whole, free, &found.x);
+    let Some(image) = mirror_image(whole.arm(), &parameters, freedom) else {
+        return Ok(found);
+    };
+    let (mut as_found, mut mirrored) = (found.x.clone(), free.iter().map(|&j| image[j]).collect::<Vec<_>>());
+    let cost = descend(&whole, free, pins, &mut as_found, monitor)?;
+    let cost_mirrored = descend(&whole, free, pins, &mut mirrored, monitor)?;
+    Ok(Searched { x: if cost_mirrored < cost { mirrored } else { as_found }, ..found })
+}
+
+/// Whether a fit to some of the readings as they are ends lower from what a search found than from elsewhere.
+pub(crate) fn does_better(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    found: &Searched,
+    elsewhere: &[f64],
+    monitor: &dyn Monitor,
+) -> Result<bool> {
+    let whole = as_they_are(problem, &found.signs);
+    let ends = |x: &[f64]| descend(&whole, free, pins, &mut x.to_vec(), monitor);
+    Ok(ends(&found.x)? < (1.0 - BETTER) * ends(elsewhere)?)
+}
+
+/// Some of the readings, nothing made of them.
+fn as_they_are(problem: &Problem, signs: &[f64]) -> Problem {
+    let mut some = problem.thinned(READINGS);
+    some.set_arm(some.arm().with_signs(signs));
+    some.weigh(&some.parameters(), Weighing::Even);
+    some
+}
+
+fn descend(problem: &Problem, free: &[usize], pins: &[Pin], x: &mut [f64], monitor: &dyn Monitor) -> Result<f64> {
+    let options = Options { max_iterations: ITERATIONS, ..Options::default() };
+    Ok(minimize(&mut Assembly::new(problem, free, pins, monitor), x, &options, &Quiet(monitor))?.cost)
+}
+
+/// Whether an arm whose tip does not move, or hardly, explains the readings: it is no arm.
+pub(crate) fn may_collapse(problem: &Problem, pins: &[Pin]) -> bool {
+    problem.still_free() || pins.iter().any(|p| p.kind == Kind::Growth)
 }
 
 /// Zero offsets thrown by up to `width`, rad.
@@ -210,12 +286,27 @@ pub(crate) fn poor(problem: &Problem, parameters: &[f64], cost: f64, unknowns: u
         return rms_mm > above_mm;
     }
     let stated = problem.noise().is_some();
-    let equations = problem.equations().saturating_sub(problem.placement_unknowns());
-    if stated && cost <= EXPLAINED * equations.saturating_sub(unknowns) as f64 {
+    if stated && !unexplained(problem, cost, unknowns) {
         return false;
     }
-    let reach_mm = problem.reach_at_mm(parameters).min(problem.reach_mm());
+    let equations = problem.equations().saturating_sub(problem.placement_unknowns());
+    let reach_mm = own_reach_mm(problem, parameters).min(own_reach_mm(problem, &problem.parameters()));
     stated && cost > POOR_NOISE.powi(2) * equations.max(1) as f64 || rms_mm > POOR * reach_mm
+}
+
+/// How far the arm reaches, mm, without what only lifts its base.
+fn own_reach_mm(problem: &Problem, parameters: &[f64]) -> f64 {
+    let mut own = parameters.to_vec();
+    if problem.base_free() && problem.arm().joints()[0].model == JointModel::Dh {
+        own[3] = 0.0;
+    }
+    problem.reach_at_mm(&own)
+}
+
+/// Whether a noise is stated and does not explain a cost: another start may do better.
+pub(crate) fn unexplained(problem: &Problem, cost: f64, unknowns: usize) -> bool {
+    let dof = problem.equations().saturating_sub(problem.placement_unknowns() + unknowns);
+    problem.noise().is_some() && cost > EXPLAINED * dof as f64
 }
 
 /// Lets a fit be interrupted without reporting each of its steps.

@@ -8,7 +8,7 @@
 
 use crate::arm::{Arm, JointModel};
 use crate::error::Result;
-use crate::fit::search::{Plan, Throw, search_over, throw};
+use crate::fit::search::{Plan, Throw, better_image, search_over, throw};
 use crate::fit::symmetry::{Distance, Freedom, fold};
 use crate::monitor::Monitor;
 use crate::problem::Problem;
@@ -59,6 +59,7 @@ pub(crate) fn search(
             throw(thin, free, plan.throw.width(attempt / patterns), x, &mut rng);
         }
     })?;
+    let found = better_image(problem, free, &[], found, monitor)?;
     let nominal = problem.parameters();
     let mut parameters = nominal.clone();
     free.iter().zip(&found.x).for_each(|(&j, &value)| parameters[j] = value);

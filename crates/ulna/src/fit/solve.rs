@@ -2,20 +2,17 @@
 
 use crate::artefacts::Weighing;
 use crate::error::{Error, Result};
-use crate::fit::search::{Plan, Throw, collapsed, is_zero_offset, poor, search};
-use crate::fit::settle::Settling;
+use crate::fit::search::{
+    Plan, Throw, collapsed, does_better, is_zero_offset, may_collapse, poor, search, unexplained,
+};
 use crate::fit::signs;
+use crate::fit::way::Way;
 use crate::identify::families::pins;
 use crate::identify::identifiability::Known;
-use crate::monitor::{Monitor, Unwatched};
+use crate::monitor::Monitor;
 use crate::problem::Problem;
-use crate::problem::assembly::Assembly;
-use crate::problem::pins::{Kind, Pin};
-use crate::solver::LeastSquares;
-use crate::solver::decomposition::Decomposition;
-use crate::solver::gram::{Cost, Gram};
-use crate::solver::lm::{self, Report, Termination, minimize, minimize_from};
-use crate::solver::triangle::Triangle;
+use crate::problem::pins::Pin;
+use crate::solver::lm::{self, Report, Termination};
 
 /// What is known of the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -74,6 +71,8 @@ pub enum SearchReason {
     Asked,
     /// The given start ended in a poor minimum.
     PoorMinimum,
+    /// The stated noise did not explain what the given start left.
+    Unexplained,
 }
 
 /// Where the fit ended, without judgement.
@@ -95,13 +94,6 @@ pub struct Solution {
     pub undecided_signs: Vec<Vec<usize>>,
 }
 
-/// Above this many readings a fit starts from where a fit to some of them ends.
-const MANY: usize = 20_000;
-const PART: usize = 2_000;
-/// A family of parameters that was pinned because the start could not tell its members apart is let go where that
-/// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test). It
-/// is let go as well where the readings tell its members apart better than a drawing does.
-const SIGNIFICANT: f64 = 4.0;
 /// Scatter of a reading taken for granted before there is a fit to show it, mm.
 pub(crate) const ASSUMED_SCATTER_MM: f64 = 0.02;
 
@@ -141,8 +133,10 @@ pub fn solve_from(
         seed: options.seed,
         poor_above_mm: options.poor_above_mm,
     };
+    let can_collapse = may_collapse(problem, &geometry_pins);
     let is_poor = |problem: &Problem, parameters: &[f64], cost: f64| {
         poor(problem, parameters, cost, free.len(), options.poor_above_mm)
+            || (can_collapse || unexplained(problem, cost, free.len())) && collapsed(problem, parameters)
     };
     let given: Vec<f64> = geometry.iter().map(|&j| start[j]).collect();
     let (mut searched_starts, mut search_reason, mut undecided_signs) = (0, None, vec![]);
@@ -166,38 +160,41 @@ pub fn solve_from(
         place(&mut here, &found.x);
         (searched_starts, search_reason) = (found.starts, Some(SearchReason::Asked));
     } else {
-        let mut first = Way::new(problem, &geometry, monitor, *options, &here, geometry_pins.clone());
+        let mut first =
+            Way::new(problem, &geometry, monitor, (options.of_lm(), options.known), &here, geometry_pins.clone());
         descended = Some(if from.is_some() { first.descend()? } else { first.first_descent(gram)? });
         here = first.parameters();
     }
     let whole_pins =
         if geometry.len() == free.len() { geometry_pins.clone() } else { pins(problem, free, &start, monitor)?.0 };
-    let mut way = Way::new(problem, free, monitor, *options, &here, whole_pins);
+    let mut way = Way::new(problem, free, monitor, (options.of_lm(), options.known), &here, whole_pins);
     let mut report = match descended.filter(|_| geometry.len() == free.len()) {
         Some(report) => report,
         None => way.descend()?,
     };
     way.discount_outliers(&mut report)?;
     way.release(&mut report)?;
-    if search_reason.is_none() && can_search && is_poor(way.problem, &way.parameters(), report.cost) {
+    let doubt = match (is_poor(way.problem, &way.parameters(), report.cost), way.problem.loss()) {
+        (true, _) => Some(SearchReason::PoorMinimum),
+        (false, None) if unexplained(way.problem, report.cost, free.len()) => Some(SearchReason::Unexplained),
+        _ => None,
+    };
+    if let Some(reason) = doubt.filter(|_| search_reason.is_none() && can_search) {
         let found = search(way.problem, &geometry, &geometry_pins, &given, plan(Throw::Widening), monitor)?;
-        (searched_starts, search_reason) = (found.starts, Some(SearchReason::PoorMinimum));
-        let mut there = start.clone();
-        place(&mut there, &found.x);
-        let first = std::mem::replace(&mut way.x, free.iter().map(|&j| there[j]).collect());
-        let mut second = way.descend()?;
-        way.discount_outliers(&mut second)?;
-        if second.cost < report.cost {
-            report = second;
-        } else {
-            way.x = first;
+        (searched_starts, search_reason) = (found.starts, Some(reason));
+        let here = way.parameters();
+        let x: Vec<f64> = geometry.iter().map(|&j| here[j]).collect();
+        let go_on = reason == SearchReason::PoorMinimum
+            || does_better(way.problem, &geometry, &geometry_pins, &found, &x, monitor)?;
+        if go_on {
+            let mut there = start.clone();
+            place(&mut there, &found.x);
+            way.try_from(&there, &mut report, |problem, parameters, cost| !is_poor(problem, parameters, cost))?;
         }
     }
     way.settle(&mut report)?;
-    let sizeless = way.pins.iter().any(|p| p.kind == Kind::Growth);
-    let collapsed = sizeless && collapsed(way.problem, &way.parameters());
     let ended = report.termination.converged() || search_reason.is_some();
-    if collapsed || ended && !free.is_empty() && is_poor(way.problem, &way.parameters(), report.cost) {
+    if ended && !free.is_empty() && is_poor(way.problem, &way.parameters(), report.cost) {
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;
@@ -209,155 +206,4 @@ pub fn solve_from(
 pub(crate) fn prepare(problem: &mut Problem) {
     problem.discount(None);
     problem.set_unit(if problem.noise().is_some() { 1.0 } else { ASSUMED_SCATTER_MM });
-}
-
-/// A fit on its way.
-struct Way<'a> {
-    problem: &'a mut Problem,
-    free: &'a [usize],
-    monitor: &'a dyn Monitor,
-    options: Options,
-    /// all parameters, those that are not free as they stay
-    start: Vec<f64>,
-    pins: Vec<Pin>,
-    /// where it is: the free parameters
-    x: Vec<f64>,
-    /// what a loss made of each reading last
-    factors: Option<Vec<Vec<f64>>>,
-}
-
-impl<'a> Way<'a> {
-    fn new(
-        problem: &'a mut Problem,
-        free: &'a [usize],
-        monitor: &'a dyn Monitor,
-        options: Options,
-        here: &[f64],
-        pins: Vec<Pin>,
-    ) -> Way<'a> {
-        let x = free.iter().map(|&j| here[j]).collect();
-        Way { problem, free, monitor, options, start: here.to_vec(), pins, x, factors: None }
-    }
-
-    fn parameters(&self) -> Vec<f64> {
-        let mut parameters = self.start.clone();
-        for (&j, &value) in self.free.iter().zip(&self.x) {
-            parameters[j] = value;
-        }
-        parameters
-    }
-
-    /// Descends from where it is.
-    fn descend(&mut self) -> Result<Report> {
-        let mut assembly = Assembly::new(self.problem, self.free, &self.pins, self.monitor);
-        minimize(&mut assembly, &mut self.x, &self.options.of_lm(), self.monitor)
-    }
-
-    /// Descends from the start, where the normal equations without pins are known already.
-    fn first_descent(&mut self, gram: Gram) -> Result<Report> {
-        if self.problem.readings() > MANY {
-            self.start_from_a_part(gram.cost())?;
-        } else if self.pins.is_empty() {
-            let mut assembly = Assembly::new(self.problem, self.free, &self.pins, self.monitor);
-            return minimize_from(&mut assembly, &mut self.x, gram, &self.options.of_lm(), self.monitor);
-        }
-        self.descend()
-    }
-
-    /// Goes where a fit to a part of many readings ends, if that is better than the start: the whole is then passed over
-    /// two or three times instead of seven.
-    fn start_from_a_part(&mut self, cost_given: f64) -> Result<()> {
-        let mut x = self.x.clone();
-        let part = self.problem.thinned(PART);
-        let mut assembly = Assembly::new(&part, self.free, &self.pins, self.monitor);
-        minimize(&mut assembly, &mut x, &self.options.of_lm(), &Unwatched)?;
-        let mut cost = Cost::default();
-        Assembly::new(self.problem, self.free, &self.pins, self.monitor).rows(&x, false, &mut cost)?;
-        if cost.0 < cost_given {
-            self.x = x;
-        }
-        Ok(())
-    }
-
-    /// Lets go of what was pinned only because the start could not tell, where the readings can: a probe taken for
-    /// straight may turn out not to be.
-    fn release(&mut self, report: &mut Report) -> Result<()> {
-        let kept: Vec<Pin> = self.pins.iter().filter(|p| p.kind != Kind::Family).cloned().collect();
-        let families = self.pins.len() - kept.len();
-        if families == 0 || report.termination == Termination::Exact {
-            return Ok(());
-        }
-        let pinned = (std::mem::replace(&mut self.pins, kept), self.x.clone());
-        let released = self.descend()?;
-        let unknowns = self.problem.placement_unknowns() + self.free.len();
-        let known = self.problem.equations() + self.problem.priors().len();
-        let dof = known.saturating_sub(unknowns).max(1);
-        let variance = if self.problem.noise().is_some() { 1.0 } else { released.cost / dof as f64 };
-        let better = report.cost - released.cost > SIGNIFICANT * families as f64 * variance;
-        if better || self.tells_apart(families, variance.sqrt())? {
-            *report = added(*report, released);
-        } else {
-            (self.pins, self.x) = pinned;
-        }
-        Ok(())
-    }
-
-    /// Whether the readings determine, from where the fit is, the `families` directions that they see least, and better
-    /// than an arm is known before. sigma: of a whitened residual.
-    fn tells_apart(&mut self, families: usize, sigma: f64) -> Result<bool> {
-        let parameters = self.parameters();
-        let symmetries: Vec<Vec<f64>> =
-            self.pins.iter().map(|pin| pin.direction_at(self.problem, self.free, &parameters)).collect();
-        let mut assembly = Assembly::new(self.problem, self.free, &[], self.monitor);
-        let mut triangle = Triangle::new(self.free.len());
-        assembly.rows(&self.x, true, &mut triangle)?;
-        let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
-        let seen = Decomposition::new(&triangle, self.free.len(), assembly.natural_scale(), &slices);
-        let known = self.problem.known(self.options.known.length_mm, self.options.known.angle_rad);
-        let known = |unknown: usize| known[self.free[unknown]];
-        let least = seen.rank.saturating_sub(families)..seen.rank;
-        let all_seen = seen.rank + symmetries.len() == seen.kept.len();
-        let well = |i: usize| seen.u_along(i, sigma).iter().enumerate().all(|(unknown, u)| u.abs() <= known(unknown));
-        Ok(all_seen && least.into_iter().all(well))
-    }
-
-    /// Where a loss is asked for: lets it weigh the readings, outliers less, until that changes nothing, all directions
-    /// still alike.
-    fn discount_outliers(&mut self, report: &mut Report) -> Result<()> {
-        if self.problem.loss().is_some() { self.settle_by(report, Weighing::Even) } else { Ok(()) }
-    }
-
-    /// Takes the weights at the solution, now by direction, and goes on, until that changes nothing.
-    fn settle(&mut self, report: &mut Report) -> Result<()> {
-        self.settle_by(report, Weighing::Full)
-    }
-
-    fn settle_by(&mut self, report: &mut Report, how: Weighing) -> Result<()> {
-        let Some(mut settling) = Settling::new(self.problem, self.free, self.pins.len(), how) else {
-            return Ok(());
-        };
-        loop {
-            settling.weigh(self.problem, &self.parameters(), report.cost);
-            let before = self.x.clone();
-            let again = self.descend()?;
-            *report = added(*report, again);
-            if let Some(settled) = settling.ended(&again, &before, &self.x) {
-                self.factors = settling.factors;
-                if !settled {
-                    report.termination = Termination::MaxIterations;
-                }
-                return Ok(());
-            }
-        }
-    }
-}
-
-/// What two descents did, one after the other.
-fn added(first: Report, second: Report) -> Report {
-    Report {
-        iterations: first.iterations + second.iterations,
-        evaluations: first.evaluations + second.evaluations,
-        cost_start: first.cost_start,
-        ..second
-    }
 }

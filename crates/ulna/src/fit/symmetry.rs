@@ -34,42 +34,22 @@ pub struct Freedom<'a> {
 
 /// Folds `parameters` to the twin nearest to `nominal`; angles come out within π of nominal where they are free.
 pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) -> Folded {
-    let joints = arm.joints().len();
-    // what is beyond the geometry has no twin
-    let units = &arm.parameter_units()[..arm.geometry_count()];
-    let allowed = |p: &[f64]| {
-        p.iter().zip(parameters).zip(units).enumerate().all(|(j, ((new, old), unit))| {
-            let moved = if *unit == Unit::Rad { wrap(new - old).abs() } else { (new - old).abs() };
-            freedom.free[j] || moved < 1e-12 || (freedom.base_free && matters_not(arm, j))
-        })
-    };
-    let twin = |flips: u64, mirror: bool| {
-        let mut p = parameters.to_vec();
-        (0..joints).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(arm, i, &mut p));
-        if mirror {
-            reflect(arm, &mut p);
-        }
-        p
-    };
-    let candidates: Vec<u64> = if joints <= ALL_COMBINATIONS {
-        (0..1 << joints).collect()
-    } else {
-        std::iter::once(0).chain((0..joints.min(63)).map(|i| 1 << i)).collect()
-    };
+    let twins = Twins { arm, parameters, freedom };
     let mirrors: &[bool] = if freedom.mirror_free { &[false, true] } else { &[false] };
     let distance = Distance::new(arm, nominal, freedom);
     let mut best = (distance.of(parameters), 0, false);
     for &mirror in mirrors {
-        for &flips in &candidates {
-            let p = twin(flips, mirror);
+        for flips in twins.candidates() {
+            let p = twins.twin(flips, mirror);
             let d = distance.of(&p);
-            if d < best.0 * (1.0 - 1e-12) && allowed(&p) {
+            if d < best.0 * (1.0 - 1e-12) && twins.allowed(&p) {
                 best = (d, flips, mirror);
             }
         }
     }
     let (_, flips, mirror) = best;
-    let mut folded = twin(flips, mirror);
+    let mut folded = twins.twin(flips, mirror);
+    let units = arm.parameter_units();
     for (j, value) in folded.iter_mut().enumerate() {
         if !freedom.free[j] || (freedom.base_free && matters_not(arm, j)) {
             *value = parameters[j];
@@ -77,12 +57,60 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
             *value = nominal[j] + wrap(*value - nominal[j]);
         }
     }
+    let joints = arm.joints().len();
     let mut steps: Vec<String> =
         (0..joints).filter(|i| flips >> i & 1 == 1).map(|i| format!("flip of joint {}", i + 1)).collect();
     if mirror {
         steps.push("mirror".into());
     }
     Folded { parameters: folded, steps }
+}
+
+/// The arm mirrored, as an arm with the held parameters as they are; none where they tell it from its mirror image.
+pub(crate) fn mirror_image(arm: &Arm, parameters: &[f64], freedom: Freedom) -> Option<Vec<f64>> {
+    let twins = Twins { arm, parameters, freedom };
+    let mut image = twins.candidates().map(|flips| twins.twin(flips, true)).find(|p| twins.allowed(p))?;
+    for (value, (old, free)) in image.iter_mut().zip(parameters.iter().zip(freedom.free)) {
+        if !free {
+            *value = *old;
+        }
+    }
+    Some(image)
+}
+
+/// Arms that describe the same readings.
+struct Twins<'a> {
+    arm: &'a Arm,
+    parameters: &'a [f64],
+    freedom: Freedom<'a>,
+}
+
+impl Twins<'_> {
+    /// Sets of joints to flip, a bit each.
+    fn candidates(&self) -> impl Iterator<Item = u64> + use<> {
+        let joints = self.arm.joints().len();
+        let all = joints <= ALL_COMBINATIONS;
+        let count = if all { 1 << joints } else { joints.min(63) as u64 + 1 };
+        (0..count).map(move |k| if all || k == 0 { k } else { 1 << (k - 1) })
+    }
+
+    fn twin(&self, flips: u64, mirror: bool) -> Vec<f64> {
+        let mut p = self.parameters.to_vec();
+        (0..self.arm.joints().len()).filter(|i| flips >> i & 1 == 1).for_each(|i| flip(self.arm, i, &mut p));
+        if mirror {
+            reflect(self.arm, &mut p);
+        }
+        p
+    }
+
+    /// Whether held parameters come out as they were; what is beyond the geometry has no twin.
+    fn allowed(&self, p: &[f64]) -> bool {
+        let units = &self.arm.parameter_units()[..self.arm.geometry_count()];
+        p.iter().zip(self.parameters).zip(units).enumerate().all(|(j, ((new, old), unit))| {
+            let moved = if *unit == Unit::Rad { wrap(new - old).abs() } else { (new - old).abs() };
+            self.freedom.free[j] || moved < 1e-12 || (self.freedom.base_free && matters_not(self.arm, j))
+        })
+    }
 }
 
 /// How far arms are from a nominal one, mm²: lengths as they are, angles at the end of the arm's reach.

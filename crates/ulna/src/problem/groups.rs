@@ -195,6 +195,11 @@ impl Problem {
         self.groups.iter().all(|g| g.scale_free())
     }
 
+    /// Whether an arm whose tip never moves explains the readings as well.
+    pub fn still_free(&self) -> bool {
+        self.groups.iter().all(|g| g.still_free())
+    }
+
     /// For each probe, whether a reading was taken with it.
     pub fn probes_used(&self) -> Vec<bool> {
         let mut used = vec![false; self.arm.probes().len()];

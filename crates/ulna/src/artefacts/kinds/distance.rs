@@ -78,4 +78,8 @@ impl Shape<3> for Instrument {
     fn scale_free(&self, sizes: &[Known], _: &[f64]) -> bool {
         sizes[1] == Known::Freely && [Known::Freely, Known::Held(0.0)].contains(&sizes[0])
     }
+    /// An instrument whose scale may vanish measures nothing but its offset.
+    fn still_free(&self, sizes: &[Known]) -> bool {
+        sizes[1] == Known::Freely
+    }
 }

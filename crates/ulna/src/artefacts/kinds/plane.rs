@@ -41,4 +41,7 @@ impl Shape<3> for Flat {
     fn scale_free(&self, _: &[Known], balls_mm: &[f64]) -> bool {
         balls_mm.windows(2).all(|pair| pair[0] == pair[1])
     }
+    fn still_free(&self, _: &[Known]) -> bool {
+        true
+    }
 }

@@ -96,6 +96,10 @@ impl Readings for Lengths {
         true
     }
 
+    fn still_free(&self) -> bool {
+        self.unknown
+    }
+
     fn probes_used(&self, probes: usize) -> Vec<bool> {
         (0..probes).map(|p| self.runs.iter().any(|run| run.probe == p)).collect()
     }

@@ -112,6 +112,10 @@ impl Readings for Bars {
         true
     }
 
+    fn still_free(&self) -> bool {
+        self.lengths.still_free()
+    }
+
     fn probes_used(&self, probes: usize) -> Vec<bool> {
         self.lengths.probes_used(probes)
     }

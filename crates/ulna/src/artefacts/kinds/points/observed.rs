@@ -39,6 +39,10 @@ impl Observed<3> for Points {
         self.frame == Frame::Free && self.placements.iter().all(|placement| placement.span < 3)
     }
 
+    fn still_free(&self, group: &Group) -> bool {
+        self.scale_free(group)
+    }
+
     fn weigh(&mut self, group: &Group, at: At, noise: Option<&Noise>, how: Weighing) {
         let full = for_noise(&group.touches, &self.of_its_own, at.model, noise);
         self.whitening = match how {
