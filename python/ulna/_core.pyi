@@ -267,10 +267,13 @@ class Fitted:
         """0: the given start was good enough."""
     @property
     def search_reason(self) -> str:
-        """ "" or "asked" or "poor-minimum"."""
+        """ "" or "asked", "poor-minimum" or "unexplained"."""
     @property
     def undecided_signs(self) -> list[list[int]]:
         """Sets of joints, from 1, that may all count the other way: readings and nominal arm do not tell."""
+    @property
+    def mirrored_signs(self) -> list[list[int]]:
+        """Those of them with which the arm is the mirror image of the one found."""
     @property
     def folded(self) -> list[str]:
         """Which symmetries brought the found arm back near the nominal: "flip of joint 3", "mirror"."""

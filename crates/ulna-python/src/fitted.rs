@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use ulna::artefacts::Unweighted;
-use ulna::fit::calibrate::{self, SearchReason};
+use ulna::fit::calibrate::{self, SearchReason, Undecided};
 
 /// What readings can and cannot determine.
 #[pyclass(frozen, module = "ulna._core")]
@@ -204,8 +204,13 @@ impl Fitted {
     /// Joints, counted from 1.
     #[getter]
     fn undecided_signs(&self) -> Vec<Vec<usize>> {
-        let counted = |set: &Vec<usize>| set.iter().map(|joint| joint + 1).collect();
-        self.inner.solution.undecided_signs.iter().map(counted).collect()
+        self.inner.solution.undecided_signs.iter().map(from_one).collect()
+    }
+
+    /// Those of them with which the arm is the mirror image of what was found.
+    #[getter]
+    fn mirrored_signs(&self) -> Vec<Vec<usize>> {
+        self.inner.solution.undecided_signs.iter().filter(|set| set.mirrored).map(from_one).collect()
     }
 
     #[getter]
@@ -267,4 +272,8 @@ impl Fitted {
     fn weights<'py>(&self, py: Python<'py>, group: usize) -> PyResult<Bound<'py, PyArray1<f64>>> {
         Ok(array1(py, &Self::group(&self.inner.residuals, group)?.weights))
     }
+}
+
+fn from_one(set: &Undecided) -> Vec<usize> {
+    set.joints.iter().map(|joint| joint + 1).collect()
 }

@@ -62,6 +62,8 @@ class FitSummary:
     folded: list[str] = field(default_factory=list)
     undecided_signs: list[list[int]] = field(default_factory=list)
     """Sets of joints that may all count the other way: readings and the arm file do not tell."""
+    mirrored_signs: list[list[int]] = field(default_factory=list)
+    """Those of them with which the arm is the mirror image of the one found; with the others it is the same arm."""
     method: Method = "lm"
     """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
     box_evaluations: int = 0

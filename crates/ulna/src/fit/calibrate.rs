@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::fit::robust::Standing;
 use crate::fit::settle::least_scatter;
 use crate::fit::solve::{ASSUMED_SCATTER_MM, prepare};
-pub use crate::fit::solve::{Options, SearchReason, Solution, Start, solve, solve_from};
+pub use crate::fit::solve::{Options, SearchReason, Solution, Start, Undecided, solve, solve_from};
 use crate::fit::symmetry::{Freedom, fold};
 use crate::identify::causes::Scene;
 use crate::identify::families::pins;

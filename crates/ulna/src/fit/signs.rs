@@ -9,7 +9,7 @@
 use crate::arm::{Arm, JointModel};
 use crate::error::Result;
 use crate::fit::search::{Plan, Throw, better_image, search_over, throw};
-use crate::fit::symmetry::{Distance, Freedom, fold};
+use crate::fit::symmetry::{Distance, Folded, Freedom, fold};
 use crate::monitor::Monitor;
 use crate::problem::Problem;
 use rand::{RngExt, SeedableRng};
@@ -26,7 +26,16 @@ pub(crate) struct FoundSigns {
     /// How many starts were tried.
     pub starts: usize,
     /// Sets of joints that may all count the other way: the readings and the nominal arm do not tell.
-    pub undecided: Vec<Vec<usize>>,
+    pub undecided: Vec<Undecided>,
+}
+
+/// Joints that may all count the other way.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Undecided {
+    /// From 0, ascending.
+    pub joints: Vec<usize>,
+    /// Whether the arm is then the mirror image of what was found; else it is the same arm, written differently.
+    pub mirrored: bool,
 }
 
 /// Readings used for a start.
@@ -96,7 +105,7 @@ fn signed(arm: &Arm, unknown: u64, negative: u64) -> Vec<f64> {
 struct Twin {
     signs: Vec<f64>,
     parameters: Vec<f64>,
-    undecided: Vec<Vec<usize>>,
+    undecided: Vec<Undecided>,
 }
 
 /// Of all arms that describe the same readings with other signs of some joints, the one nearest to the nominal arm.
@@ -127,27 +136,31 @@ fn nearest(
             signs[joint] = -signs[joint];
             turn_over(arm, joint, &mut twin);
         }
-        let folded = fold(arm, &twin, &nominal, freedom).parameters;
-        (distance.of(&folded).sqrt(), signs, folded)
+        let folded = fold(arm, &twin, &nominal, freedom);
+        (distance.of(&folded.parameters).sqrt(), signs, folded)
     };
     let subsets = 1_usize << turnable.len().min(ALL_COMBINATIONS as usize);
     let chosen = |subset: usize| -> Vec<usize> {
         turnable.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1).map(|(_, &joint)| joint).collect()
     };
-    let all: Vec<(f64, Vec<f64>, Vec<f64>)> = (0..subsets).map(|subset| with(&chosen(subset))).collect();
+    let all: Vec<(f64, Vec<f64>, Folded)> = (0..subsets).map(|subset| with(&chosen(subset))).collect();
     let plus = |signs: &[f64]| signs.iter().filter(|sign| **sign > 0.0).count();
     let least = all.iter().map(|(far, _, _)| *far).fold(f64::MAX, f64::min);
     // among equals the one with the most joints that count upwards
     let equal = all.iter().filter(|(far, _, _)| *far <= least * (1.0 + 1e-9) + 1e-9);
-    let Some((far, signs, parameters)) = equal.max_by_key(|(_, signs, _)| plus(signs)) else {
-        return Twin { signs: signs.to_vec(), parameters: parameters.to_vec(), undecided: vec![joints] };
+    let Some((far, signs, found)) = equal.max_by_key(|(_, signs, _)| plus(signs)) else {
+        return Twin { signs: signs.to_vec(), parameters: parameters.to_vec(), undecided: vec![] };
     };
     let near = all.iter().filter(|(other, _, _)| *other < FARTHER * far + FARTHER_MM);
     let reversed = |others: &Vec<f64>| (0..signs.len()).filter(|&i| others[i] != signs[i]).collect::<Vec<_>>();
-    let mut undecided: Vec<Vec<usize>> = near.map(|(_, others, _)| reversed(others)).collect();
-    undecided.retain(|set| !set.is_empty());
-    undecided.sort_by_key(|set| (set.len(), set.clone()));
-    Twin { signs: signs.clone(), parameters: parameters.clone(), undecided }
+    let told = |(_, others, twin): &(f64, Vec<f64>, Folded)| Undecided {
+        joints: reversed(others),
+        mirrored: twin.mirrored() != found.mirrored(),
+    };
+    let mut undecided: Vec<Undecided> = near.map(told).collect();
+    undecided.retain(|set| !set.joints.is_empty());
+    undecided.sort_by_key(|set| (set.joints.len(), set.clone()));
+    Twin { signs: signs.clone(), parameters: found.parameters.clone(), undecided }
 }
 
 /// The same arm, joint `i` counting the other way.

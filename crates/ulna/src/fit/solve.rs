@@ -6,6 +6,7 @@ use crate::fit::search::{
     Plan, Throw, collapsed, does_better, is_zero_offset, may_collapse, poor, search, unexplained,
 };
 use crate::fit::signs;
+pub use crate::fit::signs::Undecided;
 use crate::fit::way::Way;
 use crate::identify::families::pins;
 use crate::identify::identifiability::Known;
@@ -91,7 +92,7 @@ pub struct Solution {
     /// What a loss makes of each reading, group by group: the root of what it counts.
     pub factors: Option<Vec<Vec<f64>>>,
     /// Sets of joints that may all count the other way: the readings and the nominal arm do not tell.
-    pub undecided_signs: Vec<Vec<usize>>,
+    pub undecided_signs: Vec<Undecided>,
 }
 
 /// Scatter of a reading taken for granted before there is a fit to show it, mm.

@@ -16,6 +16,16 @@ pub struct Folded {
     pub steps: Vec<String>,
 }
 
+/// What a step to the mirror image is called.
+const MIRROR: &str = "mirror";
+
+impl Folded {
+    /// Whether the mirror image was taken.
+    pub fn mirrored(&self) -> bool {
+        self.steps.iter().any(|step| step == MIRROR)
+    }
+}
+
 /// Above this many joints twins are sought one flip at a time instead of in all combinations.
 const ALL_COMBINATIONS: usize = 12;
 
@@ -61,7 +71,7 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
     let mut steps: Vec<String> =
         (0..joints).filter(|i| flips >> i & 1 == 1).map(|i| format!("flip of joint {}", i + 1)).collect();
     if mirror {
-        steps.push("mirror".into());
+        steps.push(MIRROR.into());
     }
     Folded { parameters: folded, steps }
 }

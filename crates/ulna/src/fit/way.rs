@@ -97,7 +97,8 @@ impl<'a> Way<'a> {
         self.discount_outliers(&mut second)?;
         self.release(&mut second)?;
         let second_good = good(self.problem, &self.parameters(), second.cost);
-        if second_good > first_good || second_good == first_good && second.cost < report.cost {
+        let better = if second_good == first_good { second.cost < report.cost } else { second_good };
+        if better {
             *report = second;
         } else {
             (self.x, self.pins) = first;

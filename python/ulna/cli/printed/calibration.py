@@ -54,16 +54,34 @@ def ending(fit: FitSummary) -> str:
         reason = {
             "asked": "as asked",
             "poor-minimum": "because the given start ended in a poor minimum",
+            "unexplained": "because the stated noise did not explain what the given start left",
         }.get(fit.search_reason, fit.search_reason)
         text += f" Searched {fit.searched_starts} starts, {reason}."
     if fit.folded:
         text += f" Folded to the twin nearest the given arm: {', '.join(fit.folded)}."
-    for joints in fit.undecided_signs:
+    return text + _signs(fit)
+
+
+def _signs(fit: FitSummary) -> str:
+    """What is not told of the signs: which turn the arm into its mirror image, and how to decide; which change nothing."""
+    text = ""
+    if fit.mirrored_signs:
         text += (
-            f" Which way the encoder{'s' * (len(joints) > 1)} of joint{'s' * (len(joints) > 1)} {_and(joints)} "
-            f"count{'s' * (len(joints) == 1)}, these readings do not tell: the opposite fits as well."
+            " x, y and z may be mirror-imaged: these readings do not tell this arm from its mirror image, in which "
+            f"{_joints(fit.mirrored_signs)} the other way. To decide, turn one of these joints counter-clockwise, looked "
+            "at from the end of its z axis in the arm file: with sign = 1 its count rises. State that sign and calibrate "
+            "again."
         )
+    same = [joints for joints in fit.undecided_signs if joints not in fit.mirrored_signs]
+    if same:
+        text += f" The same arm, written differently: {_joints(same)} the other way."
     return text
+
+
+def _joints(sets: Sequence[Sequence[int]]) -> str:
+    """Which joints count, in words: "joints 1 and 3, or joint 7 count"."""
+    said = [f"joint{'s' * (len(joints) > 1)} {_and(joints)}" for joints in sets]
+    return f"{', or '.join(said)} {'counts' if len(sets[-1]) == 1 else 'count'}"
 
 
 def _and(numbers: Sequence[int]) -> str:

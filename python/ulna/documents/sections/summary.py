@@ -43,7 +43,9 @@ def counts(content: Content, words: Words) -> list[Block]:
         said.append(words("summary.search", starts=fit.searched_starts, method=fit.method))
     if fit.folded:
         said.append(words("summary.folded", folded=", ".join(fit.folded)))
-    said += [words("summary.signs", joints=own(", ".join(map(str, joints)))) for joints in fit.undecided_signs]
+    for joints in fit.undecided_signs:
+        key = "summary.mirror" if joints in fit.mirrored_signs else "summary.signs"
+        said.append(words(key, joints=own(", ".join(map(str, joints)))))
     return [Listed(said)]
 
 
