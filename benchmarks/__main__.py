@@ -40,7 +40,9 @@ def _run_apart(name: str, quick: bool, peers_python: str) -> dict[str, Any]:
     """One contender in a fresh process, so that neither memory nor threads of one touch another."""
     python = sys.executable if name.startswith("ulna") else peers_python
     command = [python, "-m", "benchmarks", "--contender", name, *(["--quick"] if quick else [])]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, env=os.environ | ONE_THREAD)
+    # the peers' interpreter need not have Ulna: the readings that all are timed on come from this tree
+    environment = os.environ | ONE_THREAD | {"PYTHONPATH": str(ROOT / "python")}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, env=environment)
     if done.returncode != 0:
         sys.exit(f"benchmark of {name} failed:\n{done.stderr}")
     answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])

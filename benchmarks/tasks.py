@@ -13,7 +13,7 @@ from benchmarks.readings import FOUND, START, TRUTH, lengths, noisy, poses
 
 FORWARD_POSES = 1_000_000
 #: what a touch costs by what is touched; on the bars, by what the arm does beyond its geometry
-TOUCHED = ("bar", "plate", "seat", "sphere", "plane")
+TOUCHED = ("bar", "plate", "seat", "sphere", "cylinder", "plane", "distance")
 EFFECTS = ("harmonics 1", "harmonics 1, 2", "expansion", "compliance")
 #: as many lengths as stay in the caches: what a kernel does, not what the memory bus does
 RESIDUAL_LENGTHS = 10_000

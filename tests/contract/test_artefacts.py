@@ -18,10 +18,11 @@ from tests.simulations import NOISE, write
 import ulna
 from ulna import Study
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kind import Kind, missing
+from ulna.artefacts.kind import Kind
 from ulna.artefacts.kinds import KINDS, kind_of
 from ulna.artefacts.quantities import QUANTITIES
 from ulna.calibration.figures import figures
+from ulna.ground.owed import missing
 from ulna.study.assembly import assemble
 
 #: one of each, as a simulation file states it
@@ -61,7 +62,7 @@ def spec(folder: Path, kind: Kind, more: str = NOISE) -> Path:
 
 @each_kind
 def test_nothing_is_missing(kind: Kind) -> None:
-    assert missing(type(kind), OWED) == []
+    assert missing("kind", type(kind), OWED) == []
     assert type(kind).__doc__
     assert kind.name == next(iter(kind.table.model_fields["kind"].annotation.__args__))  # type: ignore[union-attr]
     assert issubclass(kind.simulated, kind.table)
@@ -72,7 +73,7 @@ def test_what_is_missing_is_said_in_words() -> None:
         name = "cone"
         named = False
 
-    lacks = missing(Cone, OWED)
+    lacks = missing("kind", Cone, OWED)
     assert "kind 'cone' lacks touched: where it is touched" in lacks
     assert "kind 'cone' lacks table: its table in a study file" in lacks
     assert not any("lacks named" in each for each in lacks)

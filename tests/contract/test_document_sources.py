@@ -74,7 +74,7 @@ def _saved(made: object, folder: Path, name: str) -> Path:
 @pytest.fixture(scope="module")
 def own(calibration: Calibration, tmp_path_factory: pytest.TempPathFactory, root: Path) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("sources")
-    return {name: written(name, calibration.path, folder, root) for name in SOURCES}
+    return {name: written(name, calibration.file.path, folder, root) for name in SOURCES}
 
 
 @pytest.fixture(scope="module")
@@ -146,7 +146,7 @@ def test_a_file_that_is_not_there_is_told(name: str, calibration: Calibration, t
 def test_all_of_them_in_one_document(own: dict[str, Path], calibration: Calibration) -> None:
     """Each by its name and SHA-256, the study among the files of the result, the others beside it."""
     content: Content = gather(
-        calibration.path,
+        calibration.file.path,
         study=own["study"],
         cross_validation=own["cross-validation"],
         evaluation=own["evaluation"],
@@ -157,9 +157,9 @@ def test_all_of_them_in_one_document(own: dict[str, Path], calibration: Calibrat
     beside = {file.name: file.sha256 for file in content.provenance.beside}
     assert beside == {own[name].name: digest for name, digest in digests.items() if name != "study"}
     assert digests["study"] in {file.sha256 for file in content.provenance.files}
-    assert content.provenance.result_sha256 == calibration.sha256
+    assert content.provenance.result_sha256 == calibration.file.sha256
 
 
 def test_a_folder_stands_for_its_result(calibration: Calibration) -> None:
-    assert result_file(calibration.path.parent) == calibration.path
-    assert read_calibration(calibration.path.parent).sha256 == calibration.sha256
+    assert result_file(calibration.file.path.parent) == calibration.file.path
+    assert read_calibration(calibration.file.path.parent).file.sha256 == calibration.file.sha256

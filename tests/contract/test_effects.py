@@ -20,8 +20,9 @@ from ulna import Arm, Effects
 from ulna.arm.arm import Arm as WholeArm
 from ulna.arm.conditions import CONDITIONS
 from ulna.arm.directions import drawn, unit_of
-from ulna.arm.effects.effect import Effect, missing
+from ulna.arm.effects.effect import Effect
 from ulna.arm.effects.effects import EFFECTS, NONE, effect_named, extra_of, with_extras
+from ulna.ground.owed import missing
 from ulna.simulation.study_files import readings_table
 
 #: of joint k of seven, as large as those of real arms
@@ -89,7 +90,7 @@ def spec(folder: Path, effect: Effect, placements: int = 600) -> Path:
 
 @each_effect
 def test_nothing_is_missing(effect: Effect) -> None:
-    assert missing(type(effect), OWED) == []
+    assert missing("effect", type(effect), OWED) == []
     assert type(effect).__doc__
     arm = affected(effect)
     assert arm.extras == [effect.name]
@@ -106,7 +107,7 @@ def test_what_is_missing_is_said_in_words() -> None:
         name = "wear"
         unit = "rad"
 
-    lacks = missing(Wear, OWED)
+    lacks = missing("effect", Wear, OWED)
     assert "effect 'wear' lacks read: how it is read from a joint's table" in lacks
     assert "effect 'wear' lacks table: its keys of a joint table" in lacks
     assert not any("lacks unit" in each for each in lacks)

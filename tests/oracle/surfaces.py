@@ -13,12 +13,64 @@ from .observed import Index
 _STEP = 1e-30
 
 
-class _AboutPoints:
-    """Tips at known distances (N,) ``radius_mm`` from points; unknown: the points."""
+class _Touched:
+    """Touches whose distances from a surface are the residuals."""
 
     q_rad: Array
-    placement: Index
     probe: int | Index
+
+    def _off(self, tips: NDArray, unknowns: NDArray) -> NDArray:
+        """(N,) tips' distances from where the surface lets them be."""
+        raise NotImplementedError
+
+    def unknowns(self, start: Chain) -> Array:
+        """Where the surfaces seem to be by the start arm."""
+        raise NotImplementedError
+
+    def normals(self, arm: Chain, unknowns: Array) -> Array:
+        """(N, 3) unit vectors away from the surface."""
+        raise NotImplementedError
+
+    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
+        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
+
+    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
+        of_arm = np.einsum("ni,nik->nk", self.normals(arm, unknowns), arm.jacobian(self.q_rad, self.probe))
+        tips = arm.tip(self.q_rad, self.probe)
+        columns = np.zeros((len(tips), len(unknowns)))
+        for k in range(len(unknowns)):
+            moved = unknowns.astype(complex)
+            moved[k] += 1j * _STEP
+            columns[:, k] = self._off(tips, moved).imag / _STEP
+        return of_arm, columns
+
+    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
+        """(N, 1, 1) of a distance, mm²: what of a touch's error is across the surface."""
+        normals = self.normals(arm, self.unknowns(arm))
+        j = np.einsum("ni,nik->nk", normals, arm.encoder_jacobian(self.q_rad, self.probe))
+        return ((j**2 * encoder_rad**2).sum(axis=1) + seat_mm**2)[:, None, None]
+
+
+class _Round:
+    """Touched with balls (P,), mm, from outside or from inside."""
+
+    diameter_mm: float
+    balls_mm: Array
+    q_rad: Array
+    probe: int | Index
+    inside: bool
+
+    @property
+    def radius_mm(self) -> Array:
+        """(N,) of what the tip moves on."""
+        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
+        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
+
+
+class _AboutPoints(_Touched):
+    """Tips at known distances (N,) ``radius_mm`` from points; unknown: the points."""
+
+    placement: Index
     radius_mm: Array
 
     def unknowns(self, start: Chain) -> Array:
@@ -37,22 +89,13 @@ class _AboutPoints:
         apart = tips - unknowns.reshape(-1, 3)[self.placement]
         return np.sqrt((apart**2).sum(axis=1)) - self.radius_mm
 
-    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
-        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
-
     def normals(self, arm: Chain, unknowns: Array) -> Array:
         apart = arm.tip(self.q_rad, self.probe) - unknowns.reshape(-1, 3)[self.placement]
         return apart / np.linalg.norm(apart, axis=1, keepdims=True)
 
-    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
-        return _jacobian(self, arm, unknowns)
-
-    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
-        return _covariance(self, arm, encoder_rad, seat_mm)
-
 
 @dataclass(frozen=True)
-class Sphere(_AboutPoints):
+class Sphere(_Round, _AboutPoints):
     """Touches of a ball of (or hollow with) a diameter, mm, with the probes' balls (P,), mm; unknown: the centre."""
 
     diameter_mm: float
@@ -61,12 +104,6 @@ class Sphere(_AboutPoints):
     placement: Index
     probe: int | Index = 0
     inside: bool = False
-
-    @property
-    def radius_mm(self) -> Array:
-        """(N,) of the sphere that the tip moves on."""
-        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
-        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
 
 
 @dataclass(frozen=True)
@@ -84,7 +121,7 @@ class Distances(_AboutPoints):
 
 
 @dataclass(frozen=True)
-class Plane:
+class Plane(_Touched):
     """Touches of a flat; unknown: its normal, as the two small turns from where it seemed to be, and its distance."""
 
     balls_mm: Array
@@ -129,21 +166,12 @@ class Plane:
         radius_mm = self.radius_mm if radius_mm is None else radius_mm
         return (tips * normals[self.placement]).sum(axis=1) - at[self.placement] - radius_mm
 
-    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
-        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
-
     def normals(self, arm: Chain, unknowns: Array) -> Array:
         return self._stands(unknowns)[0][self.placement]
 
-    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
-        return _jacobian(self, arm, unknowns)
-
-    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
-        return _covariance(self, arm, encoder_rad, seat_mm)
-
 
 @dataclass(frozen=True)
-class Cylinder:
+class Cylinder(_Round, _Touched):
     """Touches of a shaft of (or bore with) a diameter, mm; unknown: two tilts and two shifts of the axis from where it
     seemed to be."""
 
@@ -155,12 +183,6 @@ class Cylinder:
     through_mm: Array  # (placements, 3) a point of each axis, roughly
     probe: int | Index = 0
     inside: bool = False
-
-    @property
-    def radius_mm(self) -> Array:
-        """(N,) of the cylinder that the tip moves on."""
-        ball = np.asarray(self.balls_mm)[np.broadcast_to(self.probe, (len(self.q_rad),))]
-        return 0.5 * (self.diameter_mm - ball if self.inside else self.diameter_mm + ball)
 
     def unknowns(self, start: Chain) -> Array:
         tips = start.tip(self.q_rad, self.probe)
@@ -199,36 +221,9 @@ class Cylinder:
     def _off(self, tips: NDArray, unknowns: NDArray) -> NDArray:
         return np.sqrt((self._away(tips, unknowns) ** 2).sum(axis=1)) - self.radius_mm
 
-    def residuals(self, arm: Chain, unknowns: NDArray) -> NDArray:
-        return self._off(arm.tip(self.q_rad, self.probe), unknowns)
-
     def normals(self, arm: Chain, unknowns: Array) -> Array:
         away = self._away(arm.tip(self.q_rad, self.probe), unknowns)
         return away / np.linalg.norm(away, axis=1, keepdims=True)
 
-    def jacobian(self, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
-        return _jacobian(self, arm, unknowns)
-
-    def covariance(self, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
-        return _covariance(self, arm, encoder_rad, seat_mm)
-
 
 Surface = Sphere | Plane | Cylinder | Distances
-
-
-def _jacobian(surface: Surface, arm: Chain, unknowns: Array) -> tuple[Array, Array]:
-    of_arm = np.einsum("ni,nik->nk", surface.normals(arm, unknowns), arm.jacobian(surface.q_rad, surface.probe))
-    tips = arm.tip(surface.q_rad, surface.probe)
-    columns = np.zeros((len(tips), len(unknowns)))
-    for k in range(len(unknowns)):
-        moved = unknowns.astype(complex)
-        moved[k] += 1j * _STEP
-        columns[:, k] = surface._off(tips, moved).imag / _STEP
-    return of_arm, columns
-
-
-def _covariance(surface: Surface, arm: Chain, encoder_rad: Array, seat_mm: float) -> Array:
-    """(N, 1, 1) of a distance, mm²: what of a touch's error is across the surface."""
-    normals = surface.normals(arm, surface.unknowns(arm))
-    j = np.einsum("ni,nik->nk", normals, arm.encoder_jacobian(surface.q_rad, surface.probe))
-    return ((j**2 * encoder_rad**2).sum(axis=1) + seat_mm**2)[:, None, None]

@@ -1,5 +1,6 @@
 """A virtual arm that is moved, touches things and reads its encoders: data with a known truth."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,9 @@ from .surfaces import Cylinder, Distances, Plane, Sphere
 
 #: Travel of every joint of the virtual arms, rad.
 TRAVEL_RAD = np.pi
+
+#: Diameter of the ball that surfaces are touched with.
+BALL_MM = 6.0
 
 
 def random_poses(arm: Chain, rng: np.random.Generator, count: int) -> Array:
@@ -161,69 +165,61 @@ def wrong_start(arm: Chain, rng: np.random.Generator, zero_rad: float, length_mm
     )
 
 
-def spheres(
-    arm: Chain,
-    rng: np.random.Generator,
-    count: int,
-    each: int,
-    diameter_mm: float = 50.0,
-    ball_mm: float = 6.0,
-    touches: Touches = EXACT,
-    inside: bool = False,
-) -> Sphere:
-    """A ball in ``count`` places, touched ``each`` times all around with the ball of probe 0."""
-    radius = 0.5 * (diameter_mm - ball_mm if inside else diameter_mm + ball_mm)
+def spheres(arm: Chain, rng: np.random.Generator, count: int, each: int, inside: bool = False) -> Sphere:
+    """A ball of 50 mm in ``count`` places, touched ``each`` times all around with the ball of probe 0."""
     around = rng.standard_normal((count * each, 3))
-    around *= radius / np.linalg.norm(around, axis=1, keepdims=True)
+    around *= _radius(50.0, inside) / np.linalg.norm(around, axis=1, keepdims=True)
     centres = np.repeat(random_points(arm, rng, count), each, axis=0)
-    q = touches.touch(arm, centres + around, rng)
-    return Sphere(diameter_mm, np.full(arm.probes, ball_mm), q, np.repeat(np.arange(count), each), inside=inside)
+    q = EXACT.touch(arm, centres + around, rng)
+    return Sphere(50.0, np.full(arm.probes, BALL_MM), q, np.repeat(np.arange(count), each), inside=inside)
 
 
-def planes(
-    arm: Chain, rng: np.random.Generator, count: int, each: int, ball_mm: float = 6.0, touches: Touches = EXACT
-) -> Plane:
+def planes(arm: Chain, rng: np.random.Generator, count: int, each: int) -> Plane:
     """A flat of 300 mm in ``count`` places, touched ``each`` times with the ball of probe 0."""
-    stands, normals = [], []
-    for where in random_points(arm, rng, 3 * count):
-        turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
-        spots = rng.uniform(-150, 150, (2 * each, 2)) @ turn[:, :2].T + where + 0.5 * ball_mm * turn[:, 2]
-        reached = np.isfinite(try_poses(arm, spots, rng)).all(axis=1)
-        if reached.sum() >= each:
-            stands.append(spots[reached][:each])
-            normals.append(turn[:, 2])
-    assert len(stands) >= count
-    q = touches.touch(arm, np.concatenate(stands[:count]), rng)
-    return Plane(np.full(arm.probes, ball_mm), q, np.repeat(np.arange(count), each), np.stack(normals[:count]))
+
+    def spots() -> Array:
+        return np.column_stack([rng.uniform(-150, 150, (2 * each, 2)), np.full(2 * each, 0.5 * BALL_MM)])
+
+    q, turn, _ = _stood(arm, rng, count, each, spots)
+    return Plane(np.full(arm.probes, BALL_MM), q, np.repeat(np.arange(count), each), turn[:, :, 2])
 
 
-def cylinders(
-    arm: Chain,
-    rng: np.random.Generator,
-    count: int,
-    each: int,
-    diameter_mm: float = 60.0,
-    ball_mm: float = 6.0,
-    touches: Touches = EXACT,
-    inside: bool = False,
-) -> Cylinder:
-    """A shaft or bore of 200 mm in ``count`` places, touched ``each`` times all around with the ball of probe 0."""
-    radius = 0.5 * (diameter_mm - ball_mm if inside else diameter_mm + ball_mm)
-    stands, along, through = [], [], []
-    for where in random_points(arm, rng, 3 * count):
-        turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+def cylinders(arm: Chain, rng: np.random.Generator, count: int, each: int, inside: bool = False) -> Cylinder:
+    """A shaft or bore of 60 and 200 mm in ``count`` places, touched ``each`` times all around with the ball of probe
+    0."""
+    radius = _radius(60.0, inside)
+
+    def spots() -> Array:
         angle, height = rng.uniform(-np.pi, np.pi, 2 * each), rng.uniform(-100, 100, 2 * each)
-        spots = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height]) @ turn.T + where
-        reached = np.isfinite(try_poses(arm, spots, rng)).all(axis=1)
+        return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height])
+
+    q, turn, at = _stood(arm, rng, count, each, spots)
+    placement = np.repeat(np.arange(count), each)
+    return Cylinder(60.0, np.full(arm.probes, BALL_MM), q, placement, turn[:, :, 2], at, inside=inside)
+
+
+def _radius(diameter_mm: float, inside: bool) -> float:
+    """Of what the tip moves on, mm."""
+    return 0.5 * (diameter_mm - BALL_MM if inside else diameter_mm + BALL_MM)
+
+
+def _stood(
+    arm: Chain, rng: np.random.Generator, count: int, each: int, spots: Callable[[], Array]
+) -> tuple[Array, Array, Array]:
+    """Something in ``count`` places and any attitude, where the arm reaches ``each`` of its ``spots`` (twice as many):
+    encoder angles, (count, 3, 3) turns and (count, 3) places."""
+    stands, turns, at = [], [], []
+    for where in random_points(arm, rng, 3 * count):
+        turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+        here = spots() @ turn.T + where
+        reached = np.isfinite(try_poses(arm, here, rng)).all(axis=1)
         if reached.sum() >= each:
-            stands.append(spots[reached][:each])
-            along.append(turn[:, 2])
-            through.append(where)
+            stands.append(here[reached][:each])
+            turns.append(turn)
+            at.append(where)
     assert len(stands) >= count
-    q = touches.touch(arm, np.concatenate(stands[:count]), rng)
-    placement, balls_mm = np.repeat(np.arange(count), each), np.full(arm.probes, ball_mm)
-    stood = (np.stack(along[:count]), np.stack(through[:count]))
-    return Cylinder(diameter_mm, balls_mm, q, placement, *stood, inside=inside)
+    q = EXACT.touch(arm, np.concatenate(stands[:count]), rng)
+    return q, np.stack(turns[:count]), np.stack(at[:count])
 
 
 def distances(arm: Chain, rng: np.random.Generator, count: int, each: int) -> Distances:

@@ -16,6 +16,7 @@ from tests.cli_runs import platinum, run
 
 import ulna
 from ulna import Artefact, InputWarning, PlanSpec, UlnaInputError, _core
+from ulna.artefacts.dimension import Dimension
 from ulna.artefacts.distance import Instrument
 from ulna.artefacts.readings import Readings
 from ulna.planning.candidates import draw
@@ -36,7 +37,7 @@ FIXED = replace(PLATE, features={"a": (500.0, 100.0, 300.0), "b": (300.0, -350.0
 SPHERE = Artefact("ball", "sphere", {}, diameter_mm=30.0)
 HOLLOW = replace(SPHERE, inside=True)
 PLANE = Artefact("flat", "plane", {})
-WIRE = Artefact("wire", "distance", {}, own=Instrument(offset_mm=12.0))
+WIRE = Artefact("wire", "distance", {}, own=Instrument(Dimension("offset", 12.0, 0.0, False)))
 BORE = Artefact("bore", "cylinder", {}, diameter_mm=40.0, inside=True)
 
 

@@ -6,6 +6,7 @@
 
 mod shared;
 
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use shared::{Dropped, TABLE_2, arm, best};
@@ -75,16 +76,23 @@ fn plane(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
     (0..20).map(|_| ([rng.random_range(-150.0..150.0), rng.random_range(-150.0..150.0), 0.0], 0)).collect()
 }
 
+/// Tips about the fixed point that an instrument measures from.
+fn distance(rng: &mut Xoshiro256PlusPlus) -> Vec<(Point, usize)> {
+    (0..20).map(|_| (direction(rng).map(|x| rng.random_range(50.0..250.0) * x), 0)).collect()
+}
+
 /// Readings of standings all over the volume, as many as make `TOUCHES`.
 struct Touched {
     q_rad: Vec<f64>,
     feature: Vec<usize>,
     placement: Vec<i64>,
+    /// from the place's origin
+    measured_mm: Vec<f64>,
 }
 
 fn touch(truth: &Arm, standing: Standing, rng: &mut Xoshiro256PlusPlus) -> Touched {
     let limits = Limits { range_rad: vec![(-PI, PI); 7] };
-    let mut touched = Touched { q_rad: vec![], feature: vec![], placement: vec![] };
+    let mut touched = Touched { q_rad: vec![], feature: vec![], placement: vec![], measured_mm: vec![] };
     let mut place = 0;
     while touched.feature.len() < TOUCHES {
         let q: Vec<f64> = (0..7).map(|_| rng.random_range(-3.0..3.0)).collect();
@@ -93,13 +101,14 @@ fn touch(truth: &Arm, standing: Standing, rng: &mut Xoshiro256PlusPlus) -> Touch
         let poses: Option<Vec<Vec<f64>>> = points
             .iter()
             .map(|(at, _)| {
-                let point = origin + nalgebra::Vector3::from(*at);
+                let point = origin + Vector3::from(*at);
                 posture_for_point(truth, 0, (point, Conditions::default()), &limits, 10, rng)
             })
             .collect();
         let Some(poses) = poses else { continue };
         touched.q_rad.extend(poses.into_iter().flatten());
         touched.feature.extend(points.iter().map(|(_, feature)| feature));
+        touched.measured_mm.extend(points.iter().map(|(at, _)| Vector3::from(*at).norm()));
         touched.placement.extend(std::iter::repeat_n(place, points.len()));
         place += 1;
     }
@@ -123,6 +132,7 @@ fn of(arm: &Arm, touched: &Touched, kind: &str, stated: &Stated) -> Problem {
         probe: &vec![0; touched.feature.len()],
         feature: stated.features_mm.map(|_| &touched.feature[..]),
         placement: Some(&touched.placement),
+        measured_mm: (kind == "distance").then_some(&touched.measured_mm),
         ..Rows::default()
     };
     problem.add(kind, stated, &rows).expect("valid rows");
@@ -143,12 +153,13 @@ fn main() {
     costs.push(("bar", cost(&mut of(&truth, &bars, "points", &ends), bars.feature.len())));
     let (plate_mm, ball) = (plate_mm(), Stated { name: "ball", balls_mm: Some(&[BALL_MM]), ..Stated::default() });
     let diameter = [Size { name: "diameter", value: SPHERE_MM, u: 0.0, fitted: false }];
-    let kinds: [(&str, Standing, &str, Stated); 5] = [
+    let kinds: [(&str, Standing, &str, Stated); 6] = [
         ("plate", plate, "points", points(&plate_mm)),
         ("seat", seat, "points", points(&[[0.0; 3]])),
         ("sphere", sphere, "sphere", Stated { dimensions: &diameter, ..ball }),
         ("cylinder", cylinder, "cylinder", Stated { dimensions: &diameter, ..ball }),
         ("plane", plane, "plane", ball),
+        ("distance", distance, "distance", Stated { name: "wire", ..Stated::default() }),
     ];
     for (name, standing, kind, stated) in kinds {
         let touched = touch(&truth, standing, &mut rng);

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     import ulna._core as _core
 
 
+Said = ArrayLike | None
+"""What people say of poses beside their angles; None: nothing."""
+
+
 @dataclass(frozen=True)
 class ArmData:
     """What an arm is, without its files: see `ulna.arm.arm.Arm`. Immutable."""
@@ -175,13 +179,7 @@ class ArmData:
             raise UlnaInputError(f"arm '{self.name}' has no probe '{name}'.{nearest(name, names)}")
         return names.index(name)
 
-    def tip(
-        self,
-        q_rad: ArrayLike,
-        probe: str | None = None,
-        temperature_c: ArrayLike | None = None,
-        approach: ArrayLike | None = None,
-    ) -> F64:
+    def tip(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: Said = None, approach: Said = None) -> F64:
         """Encoder angles (N, n) rad → tip positions (N, 3) mm in the base frame; (n,) → (3,).
 
         temperature_c: one number, (N,) or (N, n) per joint's link, °C. approach: (N, n) or (n,), +1 where the encoder's
@@ -193,11 +191,7 @@ class ArmData:
         return p_mm[0] if single else p_mm
 
     def jacobian(
-        self,
-        q_rad: ArrayLike,
-        probe: str | None = None,
-        temperature_c: ArrayLike | None = None,
-        approach: ArrayLike | None = None,
+        self, q_rad: ArrayLike, probe: str | None = None, temperature_c: Said = None, approach: Said = None
     ) -> F64:
         """(N, n) rad → (N, 3, parameters): ∂p/∂parameter in mm for a unit of each; (n,) → (3, parameters).
 
@@ -207,9 +201,7 @@ class ArmData:
         jacobian = self.core.jacobian(q, self.probe_index(probe), **self.conditions(len(q), temperature_c, approach))
         return jacobian[0] if single else jacobian
 
-    def conditions(
-        self, count: int, temperature_c: ArrayLike | None = None, approach: ArrayLike | None = None
-    ) -> Conditions:
+    def conditions(self, count: int, temperature_c: Said = None, approach: Said = None) -> Conditions:
         """Of so many poses, as the core takes them: those that the arm's tip depends on.
 
         Raises UlnaInputError where it depends on one that is not given for every pose.

@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
+from ulna.ground.arrays import F64
+
 
 @dataclass(frozen=True)
 class Artefact:
@@ -33,3 +37,8 @@ class Artefact:
     which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
     own: object = None
     """What only its kind knows of it, as a record of the kind's own file."""
+
+
+def features_mm(artefact: Artefact) -> F64:
+    """(F, 3) coordinates of its features."""
+    return np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)

@@ -11,23 +11,15 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.conditions import Conditions
-from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.artefact import Artefact, features_mm
+from ulna.artefacts.dimension import Dimension, needs_uncertainty, off_by
 from ulna.artefacts.entering import enter_points
-from ulna.artefacts.kind import (
-    Dimension,
-    Errors,
-    Kind,
-    Tips,
-    Touches,
-    Touching,
-    features_mm,
-    needs_uncertainty,
-    off_by,
-    touched_features,
-)
+from ulna.artefacts.judging import Errors, Tips
+from ulna.artefacts.kind import Kind
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.artefacts.seats import Seats
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.artefacts.touching import Touches, Touching, touched_features
 from ulna.formats.numbers import Positive, Uncertainty
 from ulna.formats.wording import rows_named
 from ulna.ground.arrays import F64

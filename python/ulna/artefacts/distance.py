@@ -11,11 +11,14 @@ from pydantic import Field
 import ulna._core as _core
 from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.dimension import Dimension
 from ulna.artefacts.entering import enter_rows
-from ulna.artefacts.kind import Dimension, Errors, Kind, Tips, Touches, Touching
+from ulna.artefacts.judging import Errors, Tips
+from ulna.artefacts.kind import Kind
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.surface import GOLDEN, PLASTIC
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.artefacts.touching import Touches, Touching
 from ulna.formats.numbers import Positive, Uncertainty
 from ulna.geometry.point import fit_point
 from ulna.ground.arrays import F64, I64
@@ -29,16 +32,21 @@ STILL = 1e-13
 """Of an offset in mm or a scale: a step this small is none."""
 
 
+RIGHT = Dimension("offset", 0.0, 0.0, False), Dimension("scale", 1.0, 0.0, False, "1")
+"""Of an instrument that is."""
+
+
 @dataclass(frozen=True)
 class Instrument:
     """What is stated of what measures: distance = offset + scale · reading."""
 
-    offset_mm: float = 0.0
-    u_offset_mm: float = 0.0
-    fit_offset: bool = False
-    scale: float = 1.0
-    u_scale: float = 0.0
-    fit_scale: bool = False
+    offset: Dimension = RIGHT[0]
+    scale: Dimension = RIGHT[1]
+
+    @property
+    def dimensions(self) -> tuple[Dimension, Dimension]:
+        """Both."""
+        return self.offset, self.scale
 
 
 class DistanceTable(StatedTable):
@@ -62,7 +70,8 @@ class DistanceTable(StatedTable):
         """Without features: nobody touches it. Raises UlnaInputError where nothing would be known."""
         mm = place.units.mm
         own = Instrument(
-            self.offset * mm, self.u_offset * mm, self.fit_offset, self.scale, self.u_scale, self.fit_scale
+            Dimension("offset", self.offset * mm, self.u_offset * mm, self.fit_offset),
+            Dimension("scale", self.scale, self.u_scale, self.fit_scale, "1"),
         )
         return Artefact(name, "distance", {}, own=own)
 
@@ -97,16 +106,12 @@ class Distance(Kind):
 
     def dimensions(self, artefact: Artefact) -> list[Dimension]:
         """Offset and scale."""
-        own = instrument(artefact)
-        return [
-            Dimension("offset", own.offset_mm, own.u_offset_mm, own.fit_offset),
-            Dimension("scale", own.scale, own.u_scale, own.fit_scale, "1"),
-        ]
+        return list(instrument(artefact).dimensions)
 
     def certain(self, artefact: Artefact) -> Artefact:
         """With the offset and the scale that are stated."""
-        own = instrument(artefact)
-        return replace(artefact, own=Instrument(offset_mm=own.offset_mm, scale=own.scale))
+        exact = (replace(each, u=0.0, fitted=False) for each in instrument(artefact).dimensions)
+        return replace(artefact, own=Instrument(*exact))
 
     def enter(self, problem: _core.Problem, group: Readings, balls_mm: F64, conditions: list[Conditions]) -> None:
         """With what was measured in each row."""
@@ -146,8 +151,8 @@ class Distance(Kind):
     def drawn(self, stated: Artefact, rng: np.random.Generator) -> Artefact:
         """The instrument's own offset and scale."""
         own = instrument(stated)
-        offset_mm, scale = rng.standard_normal(2) * (own.u_offset_mm, own.u_scale) + (own.offset_mm, own.scale)
-        return replace(stated, own=replace(own, offset_mm=float(offset_mm), scale=float(scale)))
+        drawn = (replace(each, value=each.value + each.u * float(rng.standard_normal())) for each in own.dimensions)
+        return replace(stated, own=Instrument(*drawn))
 
     def touched(self, true: Artefact, how: Touching) -> Touches:
         """The tip all around the fixed point, which is the origin, near and far."""
@@ -166,7 +171,7 @@ class Distance(Kind):
     ) -> F64 | None:
         """What the instrument reads."""
         own = instrument(true)
-        read_mm: F64 = (np.linalg.norm(touches.centre_mm, axis=1) - own.offset_mm) / own.scale
+        read_mm: F64 = (np.linalg.norm(touches.centre_mm, axis=1) - own.offset.value) / own.scale.value
         return np.tile(read_mm, places)
 
     def check_simulated(self, table: TouchedTable, key: str) -> None:
@@ -191,16 +196,12 @@ class Distance(Kind):
 
     def written(self, artefact: Artefact, features_file: str) -> dict[str, Any]:
         """What differs from an instrument that is right."""
-        own, right = instrument(artefact), Instrument()
-        keys = {
-            "offset": "offset_mm",
-            "u_offset": "u_offset_mm",
-            "fit_offset": "fit_offset",
-            "scale": "scale",
-            "u_scale": "u_scale",
-            "fit_scale": "fit_scale",
-        }
-        return {key: getattr(own, name) for key, name in keys.items() if getattr(own, name) != getattr(right, name)}
+        keys: dict[str, Any] = {}
+        for own, right in zip(instrument(artefact).dimensions, RIGHT, strict=True):
+            keys |= {own.name: own.value} if own.value != right.value else {}
+            keys |= {f"u_{own.name}": own.u} if own.u else {}
+            keys |= {f"fit_{own.name}": True} if own.fitted else {}
+        return keys
 
 
 @dataclass(frozen=True)
@@ -213,7 +214,7 @@ class _Stand:
     def tells(self, own: Instrument) -> bool:
         """Whether there is a point: not of tips on a line, say."""
         try:
-            self.errors_mm(own.offset_mm, own.scale)
+            self.errors_mm(*(each.value for each in own.dimensions))
         except UlnaInputError:
             return False
         return True
@@ -228,8 +229,8 @@ class _Stand:
 def _as_they_fit(own: Instrument, stands: list[_Stand]) -> tuple[float, float]:
     """Offset (mm) and scale: as stated, or, where they are fitted, those of the least squares over all placements, by
     Gauss–Newton with the fixed points eliminated."""
-    fitted = np.array([own.fit_offset, own.fit_scale])
-    found = np.array([own.offset_mm, own.scale])
+    fitted = np.array([each.fitted for each in own.dimensions])
+    found = np.array([each.value for each in own.dimensions])
     for _ in range(MOST_STEPS if fitted.any() else 0):
         rows, left = [], []
         for stand in stands:

@@ -8,7 +8,7 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.conditions import Conditions
-from ulna.artefacts.kind import features_mm
+from ulna.artefacts.artefact import features_mm
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64
 

@@ -7,8 +7,8 @@ kind lacks is named by `missing`, and the contract suite goes through every row.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -18,73 +18,12 @@ import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.dimension import Dimension
+from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.artefacts.tables import StatedTable, TouchedTable
-from ulna.ground.arrays import F64, I64
-from ulna.ground.errors import UlnaInputError
-
-
-@dataclass(frozen=True)
-class Errors:
-    """The single errors of one quantity, each with the placement that it belongs to."""
-
-    value_mm: F64
-    code: I64
-
-
-@dataclass(frozen=True)
-class Tips:
-    """Where an arm says that the tip was when readings were taken."""
-
-    first_mm: F64
-    """(N, 3)"""
-    second_mm: F64 | None
-    """(N, 3) of the second pose; of kinds of two poses a row."""
-    ball_mm: F64
-    """(N,) diameter of the ball; 0 where it does not matter."""
-    code: I64
-    """(N,) numbers of the placements."""
-
-
-@dataclass(frozen=True)
-class Touching:
-    """How a true artefact is touched in one placement."""
-
-    touches: int
-    """Of each feature with each probe, or in all with each probe."""
-    probes: I64
-    """(k,) indices of the probes that touch, each as often."""
-    balls_mm: F64
-    """(P,) of all the arm's probes; 0 where not known."""
-    size_mm: tuple[float, float]
-    """How large a part of it is touched, where the artefact itself has no end."""
-
-
-@dataclass(frozen=True)
-class Touches:
-    """All touches of one placement, in the order in which they are read, in the artefact's own frame."""
-
-    centre_mm: F64
-    """(T, 3) of the ball."""
-    off: F64
-    """(T, 3) unit vector away from the surface; zero where a feature is touched, which may be missed anyhow."""
-    probe: I64
-    """(T,) index into the arm's probes."""
-    feature: I64
-    """(T,) index into the artefact's features; 0 for surfaces."""
-
-
-@dataclass(frozen=True)
-class Dimension:
-    """One dimension of an artefact, as stated."""
-
-    name: str
-    """As in parameter names: `artefact.ball.diameter`."""
-    value: float
-    """In `unit`."""
-    u: float
-    fitted: bool
-    unit: str = "mm"
+from ulna.artefacts.touching import Touches, Touching
+from ulna.ground.arrays import F64
 
 
 class Kind(ABC):
@@ -174,42 +113,3 @@ class Kind(ABC):
 
     def __repr__(self) -> str:
         return f"kind {self.name}"
-
-
-def features_mm(artefact: Artefact) -> F64:
-    """(F, 3) coordinates of its features."""
-    return np.array(list(artefact.features.values()), dtype=np.float64).reshape(-1, 3)
-
-
-def touched_features(points_mm: F64, how: Touching) -> Touches:
-    """Every one of (F, 3) points as often, probe after probe."""
-    feature = np.tile(np.repeat(np.arange(len(points_mm)), how.touches), len(how.probes))
-    probe = np.repeat(how.probes, len(points_mm) * how.touches)
-    return Touches(points_mm[feature], np.zeros((len(feature), 3)), probe, feature)
-
-
-def off_by(stated: Artefact, name: str, rng: np.random.Generator) -> Artefact:
-    """The artefact with one dimension (`length_mm`, `diameter_mm`) off by a normal draw of u; None stays None."""
-    value = getattr(stated, name)
-    off_mm = stated.u_mm * float(rng.standard_normal())
-    return stated if value is None else replace(stated, **{name: value + off_mm})
-
-
-def needs_uncertainty(name: str, fit: bool, u: float | None, path: Path) -> None:
-    """What is fitted needs an uncertainty to be fitted within. Raises UlnaInputError."""
-    if fit and not u:
-        raise UlnaInputError(
-            f"{path}: key 'artefact.{name}.fit': true, but its uncertainty u is not stated; expected the standard "
-            "uncertainty that it may move within. Add u, or remove the key."
-        )
-
-
-def missing(kind: type[Kind], owed: Mapping[str, str]) -> list[str]:
-    """What a kind has not got of what it owes, in words; owed: attribute → what it is."""
-    name = getattr(kind, "name", kind.__name__)
-    abstract: frozenset[str] = getattr(kind, "__abstractmethods__", frozenset())
-    return [
-        f"kind '{name}' lacks {attribute}: {what}"
-        for attribute, what in owed.items()
-        if not hasattr(kind, attribute) or attribute in abstract
-    ]

@@ -9,20 +9,13 @@ import numpy as np
 import ulna._core as _core
 from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.dimension import Dimension, needs_uncertainty, off_by
 from ulna.artefacts.entering import enter_rows
-from ulna.artefacts.kind import (
-    Dimension,
-    Errors,
-    Kind,
-    Tips,
-    Touches,
-    Touching,
-    needs_uncertainty,
-    off_by,
-    touched_features,
-)
+from ulna.artefacts.judging import Errors, Tips
+from ulna.artefacts.kind import Kind
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.artefacts.touching import Touches, Touching, touched_features
 from ulna.formats.numbers import Positive, Uncertainty
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError

@@ -12,11 +12,13 @@ import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.dimension import Dimension
 from ulna.artefacts.entering import enter_surface
-from ulna.artefacts.kind import Dimension, Errors, Tips, Touches, Touching
+from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.surface import PLASTIC, Surface, check_known, of_placements
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.artefacts.touching import Touches, Touching
 from ulna.formats.numbers import Positive
 from ulna.ground.arrays import F64
 

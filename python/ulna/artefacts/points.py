@@ -10,23 +10,16 @@ from pydantic import Discriminator, Field, Tag
 
 import ulna._core as _core
 from ulna.arm.conditions import Conditions
-from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.artefact import Artefact, features_mm
+from ulna.artefacts.dimension import Dimension, needs_uncertainty
 from ulna.artefacts.entering import enter_points
 from ulna.artefacts.features import features_of_file
-from ulna.artefacts.kind import (
-    Dimension,
-    Errors,
-    Kind,
-    Tips,
-    Touches,
-    Touching,
-    features_mm,
-    needs_uncertainty,
-    touched_features,
-)
+from ulna.artefacts.judging import Errors, Tips
+from ulna.artefacts.kind import Kind
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.seats import Seats
 from ulna.artefacts.tables import Place, StatedTable, TouchedTable
+from ulna.artefacts.touching import Touches, Touching, touched_features
 from ulna.formats.layout import TableKeys
 from ulna.formats.names import check_name
 from ulna.formats.numbers import Coordinates, Uncertainty

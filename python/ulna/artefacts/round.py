@@ -12,11 +12,13 @@ import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions
 from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.dimension import Dimension, off_by
 from ulna.artefacts.entering import enter_surface
-from ulna.artefacts.kind import Dimension, Errors, Tips, Touches, Touching, off_by
+from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.readings import Readings
 from ulna.artefacts.surface import Surface, check_fitting, check_known, of_placements
 from ulna.artefacts.tables import Place, StatedTable
+from ulna.artefacts.touching import Touches, Touching
 from ulna.formats.numbers import Positive, Uncertainty
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError

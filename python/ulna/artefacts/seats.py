@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ulna.artefacts.kind import Errors, Tips, features_mm
+from ulna.artefacts.artefact import features_mm
+from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.readings import Readings
 from ulna.geometry.rigid import placed
 from ulna.ground.arrays import F64, I64

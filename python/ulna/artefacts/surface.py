@@ -9,7 +9,8 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kind import Errors, Kind, Tips
+from ulna.artefacts.judging import Errors, Tips
+from ulna.artefacts.kind import Kind
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.kind import Errors, Tips
+from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.quantities import NAMES, QUANTITIES, Quantity
 from ulna.artefacts.readings import Readings

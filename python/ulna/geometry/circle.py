@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ulna.geometry.clouds import Clouds, peak_to_valley
+from ulna.geometry.clouds import Clouds, Fitted
 from ulna.geometry.settling import settle, solved
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
@@ -23,7 +23,7 @@ FARTHEST = 1e7
 
 
 @dataclass(frozen=True)
-class Circle:
+class Circle(Fitted):
     """Fitted to one set of points, or to many: the leading axes are those of the points."""
 
     centre_mm: F64
@@ -36,11 +36,6 @@ class Circle:
     """(..., N) distance from the axis minus the radius: positive is outside."""
     heights_mm: F64
     """(..., N) distance from the circle's plane, along the normal."""
-
-    @property
-    def form_mm(self) -> F64:
-        """(...,) largest minus smallest distance of a point from the axis: the roundness about this circle."""
-        return peak_to_valley(self.residuals_mm)
 
 
 def fit_circle(points_mm: ArrayLike, what: str = "circle") -> Circle:

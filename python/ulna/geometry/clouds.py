@@ -100,6 +100,14 @@ class Clouds:
         return values.reshape(*self.shape, self.count)
 
 
-def peak_to_valley(residuals_mm: F64) -> F64:
-    """(..., N) → (...,): largest minus smallest."""
-    return np.asarray(residuals_mm.max(axis=-1) - residuals_mm.min(axis=-1))
+class Fitted:
+    """A surface or curve that was fitted to one set of points, or to many: the leading axes are those of the points."""
+
+    residuals_mm: F64
+    """(..., N) how far each point is off."""
+
+    @property
+    def form_mm(self) -> F64:
+        """(...,) largest minus smallest residual: flatness, roundness, sphericity or cylindricity about what was
+        fitted."""
+        return np.asarray(self.residuals_mm.max(axis=-1) - self.residuals_mm.min(axis=-1))

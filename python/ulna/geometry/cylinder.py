@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ulna.geometry.clouds import Clouds, peak_to_valley
+from ulna.geometry.clouds import Clouds, Fitted
 from ulna.geometry.settling import settle
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
@@ -25,7 +25,7 @@ MOST_NUMBERS = 1_000_000
 
 
 @dataclass(frozen=True)
-class Cylinder:
+class Cylinder(Fitted):
     """Fitted to one set of points, or to many: the leading axes are those of the points."""
 
     point_mm: F64
@@ -36,11 +36,6 @@ class Cylinder:
     """(...,)"""
     residuals_mm: F64
     """(..., N) distance from the axis minus the radius (and the offset): positive is outside."""
-
-    @property
-    def form_mm(self) -> F64:
-        """(...,) largest minus smallest distance of a point from the surface: the cylindricity about this cylinder."""
-        return peak_to_valley(self.residuals_mm)
 
 
 def fit_cylinder(points_mm: ArrayLike, what: str = "cylinder", offsets_mm: ArrayLike = 0.0) -> Cylinder:

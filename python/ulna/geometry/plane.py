@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ulna.geometry.clouds import Clouds, peak_to_valley
+from ulna.geometry.clouds import Clouds, Fitted
 from ulna.ground.arrays import F64
 
 LEAST = 3
@@ -15,7 +15,7 @@ LEAST = 3
 
 
 @dataclass(frozen=True)
-class Plane:
+class Plane(Fitted):
     """Fitted to one set of points, or to many: the leading axes are those of the points."""
 
     point_mm: F64
@@ -24,11 +24,6 @@ class Plane:
     """(..., 3) unit vector, towards the side of the origin of coordinates (of an arm: its base)."""
     residuals_mm: F64
     """(..., N) distance along the normal."""
-
-    @property
-    def form_mm(self) -> F64:
-        """(...,) largest minus smallest distance: the flatness about the least-squares plane."""
-        return peak_to_valley(self.residuals_mm)
 
     def distance_mm(self, point_mm: ArrayLike) -> F64:
         """(..., 3) points → (...,): signed, along the normal."""

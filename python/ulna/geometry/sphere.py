@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ulna.geometry.clouds import Clouds, peak_to_valley
+from ulna.geometry.clouds import Clouds, Fitted
 from ulna.geometry.settling import settle, solved
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
@@ -19,7 +19,7 @@ FARTHEST = 1e7
 
 
 @dataclass(frozen=True)
-class Sphere:
+class Sphere(Fitted):
     """Fitted to one set of points, or to many: the leading axes are those of the points."""
 
     centre_mm: F64
@@ -28,11 +28,6 @@ class Sphere:
     """(...,)"""
     residuals_mm: F64
     """(..., N) distance from the centre minus the radius (and the offset): positive is outside."""
-
-    @property
-    def form_mm(self) -> F64:
-        """(...,) largest minus smallest distance of a point from the surface."""
-        return peak_to_valley(self.residuals_mm)
 
 
 def fit_sphere(points_mm: ArrayLike, what: str = "sphere", offsets_mm: ArrayLike = 0.0) -> Sphere:

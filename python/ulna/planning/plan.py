@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,20 @@ PLACED = 8
 """Measurements that stand for a place where places are chosen first."""
 
 
+@dataclass(frozen=True)
+class _Asked:
+    """What every step of a plan is about."""
+
+    arm: Arm
+    spec: PlanSpec
+    mover: Mover
+    """Of the arm, with the travel that its joints have."""
+    probe: int
+    """Index of the probe that is on."""
+    free: I64
+    """(F,) indices of the parameters that the calibration will fit."""
+
+
 def plan(
     arm: Arm,
     spec: PlanSpec,
@@ -56,13 +70,14 @@ def plan(
     probe = arm.probe_index(spec.probe)
     mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
     free = free_parameters(arm, spec)
+    asked = _Asked(arm, spec, mover, probe, free)
     began = time.perf_counter()
     candidates, rows = draw_all(spec, arm, mover, probe, free, team, told)
     drawn = time.perf_counter()
-    scene = _scene(arm, spec, mover, probe, free, rows, rng)
+    scene = _scene(asked, rows, rng)
     directions = scene.directions(rng)
     if spec.placements is not None and spec.placements < spec.choose and spec.artefact.frame == "free":
-        candidates, scene = _few_places(arm, spec, mover, probe, free, candidates, scene, directions, rng, told)
+        candidates, scene = _few_places(asked, candidates, scene, directions, rng, told)
     if not scene.fixed.any() and spec.choose * scene.rows.shape[1] < scene.coordinates.rank:
         raise _too_few(spec, scene)
     rowed = time.perf_counter()
@@ -85,7 +100,7 @@ def plan(
         observability=observability(own, scene.coordinates),
         random_observability=observability(others, scene.coordinates),
         curve=[*_curve(scene, directions, rng, told), (spec.choose, planned.u_length_mm, random.u_length_mm)],
-        trial=_trial(arm, spec, mover, probe, free, candidates, chosen, scene, rng, told, team, keep),
+        trial=_trial(asked, candidates, chosen, scene, rng, told, team, keep),
         determined=scene.coordinates.rank,
         free=len(free),
         candidates=len(candidates),
@@ -93,22 +108,19 @@ def plan(
     )
 
 
-def _scene(arm: Arm, spec: PlanSpec, mover: Mover, probe: int, free: I64, rows: F64, rng: np.random.Generator) -> Scene:
+def _scene(asked: _Asked, rows: F64, rng: np.random.Generator) -> Scene:
+    arm, spec, free = asked.arm, asked.spec, asked.free
     taken = np.zeros((0, len(free))) if spec.taken is None else taken_rows(spec, spec.taken, arm, free)
     units = np.array(arm.parameter_units)[free]
-    natural = np.where(units == "mm", 1.0, arm.core.reach_mm(probe))
+    natural = np.where(units == "mm", 1.0, arm.core.reach_mm(asked.probe))
     coordinates = Coordinates.of(np.concatenate([rows.reshape(-1, len(free)), taken]), natural)
     at_hand = taken @ coordinates.to_free
-    tests = Tests.of(arm, spec, mover, probe, free, coordinates, rng)
+    tests = Tests.of(arm, spec, asked.mover, asked.probe, free, coordinates, rng)
     return Scene(spec, np.ascontiguousarray(rows @ coordinates.to_free), coordinates, at_hand.T @ at_hand, tests)
 
 
 def _few_places(
-    arm: Arm,
-    spec: PlanSpec,
-    mover: Mover,
-    probe: int,
-    free: I64,
+    asked: _Asked,
     candidates: Candidates,
     scene: Scene,
     directions: F64 | None,
@@ -116,6 +128,7 @@ def _few_places(
     told: Progress,
 ) -> tuple[Candidates, Scene]:
     """The best places first, each judged by some of its measurements together; then candidates in these alone."""
+    spec, probe = asked.spec, asked.probe
     assert spec.placements is not None
     places = len(candidates.features_mm)
     some = np.stack([rng.choice(np.flatnonzero(candidates.place == k), PLACED, replace=False) for k in range(places)])
@@ -124,12 +137,12 @@ def _few_places(
     best = together.choose(spec.placements, directions, told)
     at_mm = candidates.features_mm[best]
     each = -(-spec.candidates // spec.placements)
-    what, features = touchable(spec, arm, probe), at_mm.shape[1]
+    what, features = touchable(spec, asked.arm, probe), at_mm.shape[1]
     postures = int(np.ceil(np.sqrt(each))) if what.pairs else EACH
     if what.outward is not None:
         postures = ON_SURFACE * POSTURES
     points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
-    q_rad, reached = mover.on_points(points, np.full(len(points), probe), {}, int(rng.integers(2**63)))
+    q_rad, reached = asked.mover.on_points(points, np.full(len(points), probe), {}, int(rng.integers(2**63)))
     q_rad = q_rad.reshape(len(best), features, postures, -1)
     # a posture that was not found again gives way to one that was: they are all of one feature
     for k, j in zip(*np.nonzero(~reached.reshape(q_rad.shape[:3]).all(axis=2)), strict=True):
@@ -139,7 +152,7 @@ def _few_places(
         else:
             q_rad[k, j] = q_rad[k, j, np.resize(found, postures)]
     inside = combine(at_mm, q_rad, each, what.touches, rng)
-    rows = candidate_rows(spec, arm, probe, free, inside) @ scene.coordinates.to_free
+    rows = candidate_rows(spec, asked.arm, probe, asked.free, inside) @ scene.coordinates.to_free
     return inside, replace(scene, rows=np.ascontiguousarray(rows))
 
 
@@ -162,11 +175,7 @@ def _curve(
 
 
 def _trial(
-    arm: Arm,
-    spec: PlanSpec,
-    mover: Mover,
-    probe: int,
-    free: I64,
+    asked: _Asked,
     candidates: Candidates,
     chosen: I64,
     scene: Scene,
@@ -176,9 +185,10 @@ def _trial(
     keep: str | Path | None,
 ) -> Trial | None:
     """On bars that no criterion has seen."""
+    arm, spec, probe, free = asked.arm, asked.spec, asked.probe, asked.free
     if not spec.trials or spec.taken is not None:
         return None
-    fresh_rad = Tests.of(arm, spec, mover, probe, free, scene.coordinates, rng).q_rad
+    fresh_rad = Tests.of(arm, spec, asked.mover, probe, free, scene.coordinates, rng).q_rad
     some = [rng.choice(len(candidates), spec.choose, replace=False) for _ in range(TRIAL_SETS)]
     sets = [candidates.poses(which) for which in [chosen, *some]]
     return carry_out(arm, spec, probe, free, sets, fresh_rad, workers, keep, told)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.artefacts.kind import Touches
 from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.touching import Touches
 from ulna.ground.arrays import F64
 from ulna.planning.spec import PlanSpec
 from ulna.simulation.places import Standing

@@ -11,9 +11,9 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import without
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kind import Touches
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
+from ulna.artefacts.touching import Touches
 from ulna.formats.output import output_folder, refuse_inputs
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError

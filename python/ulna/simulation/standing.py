@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.conditions import CONDITIONS, TEMPERATURE, Condition
-from ulna.artefacts.kind import Touches
+from ulna.artefacts.touching import Touches
 from ulna.ground.arrays import F64, I64, Bool, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover

@@ -6,9 +6,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kind import Touches
-from ulna.artefacts.kind import Touching as How
 from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.touching import Touches
+from ulna.artefacts.touching import Touching as How
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.spec import Touching
 

@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 use std::time::Instant;
-use ulna::arm::{Arm, Joint, JointModel, Probe};
+use ulna::arm::{Arm, Joint, Probe};
 use ulna::solver::{RowBlock, RowSink};
 
 const H: f64 = std::f64::consts::FRAC_PI_2;
@@ -17,17 +17,8 @@ pub const TABLE_2: [[f64; 4]; 6] = [
 ];
 /// An arm with one bent probe.
 pub fn arm(dh: [[f64; 4]; 6], tip_mm: [f64; 3]) -> Arm {
-    let joint = |p: [f64; 4]| Joint {
-        theta0_rad: p[0],
-        alpha_rad: p[1],
-        a_mm: p[2],
-        d_mm: p[3],
-        beta_rad: 0.0,
-        sign: 1.0,
-        model: JointModel::Dh,
-    };
     let probe = Probe { name: "bent".into(), tip_mm };
-    Arm::new(dh.map(joint).to_vec(), 1.0, vec![probe]).expect("a valid arm")
+    Arm::new(dh.map(Joint::dh).to_vec(), 1.0, vec![probe]).expect("a valid arm")
 }
 
 /// Seconds of the best of `runs`.

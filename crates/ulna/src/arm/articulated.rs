@@ -258,16 +258,7 @@ pub(crate) mod samples {
 
     /// A DH arm with all signs +1 and one probe named `bent`.
     pub fn arm(dh: &[[f64; 4]], tip_mm: [f64; 3]) -> Arm {
-        let joint = |p: &[f64; 4]| Joint {
-            theta0_rad: p[0],
-            alpha_rad: p[1],
-            a_mm: p[2],
-            d_mm: p[3],
-            beta_rad: 0.0,
-            sign: 1.0,
-            model: JointModel::Dh,
-        };
         let probe = Probe { name: "bent".into(), tip_mm };
-        Arm::new(dh.iter().map(joint).collect(), 1.0, vec![probe]).unwrap()
+        Arm::new(dh.iter().copied().map(Joint::dh).collect(), 1.0, vec![probe]).unwrap()
     }
 }

@@ -29,6 +29,12 @@ pub struct Joint {
 }
 
 impl Joint {
+    /// A joint of Denavit and Hartenberg from a row of their table: theta0 and alpha in rad, a and d in mm; its encoder
+    /// counts with its axis.
+    pub const fn dh([theta0_rad, alpha_rad, a_mm, d_mm]: [f64; 4]) -> Joint {
+        Joint { theta0_rad, alpha_rad, a_mm, d_mm, beta_rad: 0.0, sign: 1.0, model: JointModel::Dh }
+    }
+
     /// The joint's four parameters in the order of [`super::Arm::parameter_names`].
     pub fn parameters(&self) -> [f64; 4] {
         let last = match self.model {

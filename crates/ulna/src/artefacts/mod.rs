@@ -36,7 +36,7 @@ pub use kinds::{KINDS, readings_of};
 pub use model::{At, Model};
 pub(crate) use noise::normal;
 pub use noise::{Noise, Weighing};
-pub use readings::Readings;
+pub use readings::{Again, Readings};
 pub use residuals::{Unweighted, Whitened};
 pub use stated::{Column, Frame, Rows, Size, Stated};
 pub use writer::{Buffers, Writer};

@@ -3,7 +3,7 @@
 use super::dimension::{Dimension, Unknowns};
 use super::model::At;
 use super::noise::{Noise, Weighing};
-use super::readings::Readings;
+use super::readings::{Again, Readings};
 use super::residuals::{Unweighted, Whitened};
 use super::writer::Writer;
 use crate::arm::Seen;
@@ -176,14 +176,8 @@ impl Readings for Parts {
         self.0.iter().map(|part| part.readings.seen()).reduce(Seen::and).unwrap_or_default()
     }
 
-    fn taken_anew(
-        &self,
-        truth: At,
-        calibrated: &[f64],
-        noise: &Noise,
-        rng: &mut Xoshiro256PlusPlus,
-    ) -> Box<dyn Readings> {
-        self.with(|part| part.readings.taken_anew(truth, calibrated, noise, rng))
+    fn taken_anew(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        self.with(|part| part.readings.taken_anew(again, rng))
     }
 
     fn thinned(&self, most: usize) -> Box<dyn Readings> {

@@ -3,7 +3,7 @@
 use super::dimension::{Dimension, Unknowns};
 use super::model::At;
 use super::noise::{Noise, Weighing};
-use super::readings::Readings;
+use super::readings::{Again, Readings};
 use super::residuals::{Unweighted, Whitened, shared};
 use super::rows::{Eliminated, Layout, MOST_OWN, Place};
 use super::tile::{Directions, TILE, Tile};
@@ -285,13 +285,8 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         self.group.touches.poses.seen()
     }
 
-    fn taken_anew(
-        &self,
-        truth: At,
-        calibrated: &[f64],
-        noise: &Noise,
-        rng: &mut Xoshiro256PlusPlus,
-    ) -> Box<dyn Readings> {
+    fn taken_anew(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        let Again { truth, calibrated, noise } = *again;
         let mut drawn = self.clone();
         drawn.kind.recalibrate(&self.group, truth.dimensions, calibrated);
         drawn.group.dimensions.iter_mut().zip(calibrated).for_each(|(dimension, &value)| dimension.value = value);

@@ -11,6 +11,17 @@ use crate::kinematics::Sample;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::fmt::Debug;
 
+/// How readings are taken once more: exact where the arm and the artefact truly are, but for new noise.
+#[derive(Debug, Clone, Copy)]
+pub struct Again<'a> {
+    /// The arm and the dimensions as they are.
+    pub truth: At<'a>,
+    /// The dimensions as they were calibrated anew.
+    pub calibrated: &'a [f64],
+    /// Of the seats and the encoders.
+    pub noise: &'a Noise,
+}
+
 /// Readings of one artefact.
 pub trait Readings: Debug + Send + Sync {
     /// Number of rows in the file.
@@ -92,18 +103,11 @@ pub trait Readings: Debug + Send + Sync {
     fn redrawn(&self, truth: At, noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
         let stated = self.dimensions().iter().zip(truth.dimensions);
         let calibrated: Vec<f64> = stated.map(|(dimension, value)| value + dimension.u * normal(rng)).collect();
-        self.taken_anew(truth, &calibrated, noise, rng)
+        self.taken_anew(&Again { truth, calibrated: &calibrated, noise }, rng)
     }
 
-    /// The same readings, exact at these parameters, with new noise, of an artefact whose dimensions are what they are and
-    /// were calibrated as `calibrated`.
-    fn taken_anew(
-        &self,
-        truth: At,
-        calibrated: &[f64],
-        noise: &Noise,
-        rng: &mut Xoshiro256PlusPlus,
-    ) -> Box<dyn Readings>;
+    /// The same readings taken once more.
+    fn taken_anew(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings>;
 
     /// About `most` of these readings, evenly chosen, for a quick look.
     fn thinned(&self, most: usize) -> Box<dyn Readings>;

@@ -13,150 +13,86 @@ pub struct Case {
     pub label: &'static str,
     /// its kind, as the registry calls it
     pub kind: &'static str,
-    pub add: fn(&mut Problem, &mut Xoshiro256PlusPlus, &'static str),
+    pub add: Add,
+}
+
+type Add = fn(&mut Problem, &mut Xoshiro256PlusPlus, &'static str);
+
+const fn case(label: &'static str, kind: &'static str, add: Add) -> Case {
+    Case { label, kind, add }
 }
 
 const BAR: &[[f64; 3]] = &[[0.0; 3], [443.0, 0.0, 0.0]];
+/// The bar's length, where it is calibrated and fitted, and where nothing is known of it.
+const MAY_CHANGE: &[Size] = &[size("length", 443.0, 0.5, true)];
+const UNKNOWN: &[Size] = &[size("length", 443.0, 0.0, true)];
 const PLATE: &[[f64; 3]] = &[[0.0; 3], [100.0, 0.0, 0.0], [0.0, 150.0, 0.0], [80.0, 90.0, 5.0]];
 const IN_LINE: &[[f64; 3]] = &[[0.0; 3], [60.0, 0.0, 0.0], [120.0, 0.0, 0.0], [240.0, 0.0, 0.0], [420.0, 0.0, 0.0]];
 
 pub const CASES: &[Case] = &[
-    Case { label: "pairs of poses", kind: "length", add: |p, r, k| lengths(p, r, k, &[]) },
-    Case {
-        label: "pairs of poses whose length may change",
-        kind: "length",
-        add: |p, r, k| lengths(p, r, k, &[size("length", 443.0, 0.5, true)]),
-    },
-    Case {
-        label: "pairs of poses an unknown length apart",
-        kind: "length",
-        add: |p, r, k| lengths(p, r, k, &[size("length", 443.0, 0.0, true)]),
-    },
-    Case { label: "bar touched once", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (30, 1)) },
-    Case {
-        label: "bar touched once at each end by one probe",
-        kind: "points",
-        add: |p, r, k| bars(p, r, k, &points(BAR), (30, 0)),
-    },
-    Case {
-        label: "bar touched once at each end whose length may change",
-        kind: "points",
-        add: |p, r, k| {
-            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.5, true)], ..points(BAR) }, (40, 0))
-        },
-    },
-    Case {
-        label: "bar touched once at each end, of unknown length",
-        kind: "points",
-        add: |p, r, k| {
-            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.0, true)], ..points(BAR) }, (40, 0))
-        },
-    },
-    Case {
-        label: "bar touched once at each end here and more often there",
-        kind: "points",
-        add: |p, r, k| {
-            bars(p, r, k, &Stated { dimensions: &[size("length", 443.0, 0.5, true)], ..points(BAR) }, (25, 9))
-        },
-    },
-    Case { label: "bar touched often", kind: "points", add: |p, r, k| touched(p, r, k, &points(BAR), (3, 13)) },
-    Case {
-        label: "bar whose length may change",
-        kind: "points",
-        add: |p, r, k| {
-            let dimensions = &[size("length", 443.0, 0.5, true)];
-            touched(p, r, k, &Stated { dimensions, ..points(BAR) }, (12, 2));
-        },
-    },
-    Case {
-        label: "bar of unknown length",
-        kind: "points",
-        add: |p, r, k| {
-            let dimensions = &[size("length", 443.0, 0.0, true)];
-            touched(p, r, k, &Stated { dimensions, ..points(BAR) }, (12, 2));
-        },
-    },
-    Case { label: "seat", kind: "points", add: |p, r, k| touched(p, r, k, &points(&[[0.0; 3]]), (2, 45)) },
-    Case { label: "plate", kind: "points", add: |p, r, k| touched(p, r, k, &points(PLATE), (3, 4)) },
-    Case {
-        label: "plate whose features may move",
-        kind: "points",
-        add: |p, r, k| {
-            let stated = Stated { feature_u_mm: Some(&[0.4, 0.0, 0.3, 0.2]), features_fitted: true, ..points(PLATE) };
-            touched(p, r, k, &stated, (3, 4));
-        },
-    },
-    Case {
-        label: "coordinates",
-        kind: "points",
-        add: |p, r, k| {
-            let grid = [[300.0, 0.0, 100.0], [0.0, 400.0, 200.0], [-300.0, 200.0, 0.0]];
-            touched(p, r, k, &Stated { frame: Some(Frame::Arm), ..points(&grid) }, (1, 12));
-        },
-    },
-    Case {
-        label: "ball bar of many balls in line",
-        kind: "points",
-        add: |p, r, k| touched(p, r, k, &points(IN_LINE), (3, 6)),
-    },
-    Case { label: "ball", kind: "sphere", add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false) },
-    Case {
-        label: "ball of a diameter that may change",
-        kind: "sphere",
-        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.01, true), false),
-    },
-    Case {
-        label: "ball of unknown diameter",
-        kind: "sphere",
-        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false),
-    },
-    Case {
-        label: "hollow sphere",
-        kind: "sphere",
-        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), true),
-    },
-    Case { label: "shaft", kind: "cylinder", add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false) },
-    Case {
-        label: "bore of a diameter that may change",
-        kind: "cylinder",
-        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.01, true), true),
-    },
-    Case {
-        label: "shaft of unknown diameter",
-        kind: "cylinder",
-        add: |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false),
-    },
-    Case { label: "distances", kind: "distance", add: |p, r, k| distances(p, r, k, &[]) },
-    Case {
-        label: "distances of an instrument that may be off",
-        kind: "distance",
-        add: |p, r, k| distances(p, r, k, &[size("offset", 5.0, 1.0, true), size("scale", 1.001, 0.01, true)]),
-    },
-    Case {
-        label: "distances of an instrument of unknown scale",
-        kind: "distance",
-        add: |p, r, k| distances(p, r, k, &[size("scale", 1.0, 0.0, true)]),
-    },
-    Case {
-        label: "distances of an instrument of which nothing is known",
-        kind: "distance",
-        add: |p, r, k| distances(p, r, k, &[size("offset", 5.0, 0.0, true), size("scale", 1.001, 0.0, true)]),
-    },
-    Case { label: "flat", kind: "plane", add: |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14)) },
-    Case {
-        label: "flat touched with two balls",
-        kind: "plane",
-        // so many that no standing's balls leave its side undecided: there the cost has a kink
-        add: |p, r, k| touched(p, r, k, &balls(&[6.0, 40.0]), (3, 16)),
-    },
+    case("pairs of poses", "length", |p, r, k| lengths(p, r, k, &[])),
+    case("pairs of poses whose length may change", "length", |p, r, k| lengths(p, r, k, MAY_CHANGE)),
+    case("pairs of poses an unknown length apart", "length", |p, r, k| lengths(p, r, k, UNKNOWN)),
+    case("bar touched once", "points", |p, r, k| touched(p, r, k, &points(BAR), (30, 1))),
+    case("bar touched once at each end by one probe", "points", |p, r, k| bars(p, r, k, &points(BAR), (30, 0))),
+    case("bar touched once at each end whose length may change", "points", |p, r, k| {
+        bars(p, r, k, &bar(MAY_CHANGE), (40, 0))
+    }),
+    case("bar touched once at each end, of unknown length", "points", |p, r, k| bars(p, r, k, &bar(UNKNOWN), (40, 0))),
+    case("bar touched once at each end here and more often there", "points", |p, r, k| {
+        bars(p, r, k, &bar(MAY_CHANGE), (25, 9))
+    }),
+    case("bar touched often", "points", |p, r, k| touched(p, r, k, &points(BAR), (3, 13))),
+    case("bar whose length may change", "points", |p, r, k| touched(p, r, k, &bar(MAY_CHANGE), (12, 2))),
+    case("bar of unknown length", "points", |p, r, k| touched(p, r, k, &bar(UNKNOWN), (12, 2))),
+    case("seat", "points", |p, r, k| touched(p, r, k, &points(&[[0.0; 3]]), (2, 45))),
+    case("plate", "points", |p, r, k| touched(p, r, k, &points(PLATE), (3, 4))),
+    case("plate whose features may move", "points", |p, r, k| {
+        let stated = Stated { feature_u_mm: Some(&[0.4, 0.0, 0.3, 0.2]), features_fitted: true, ..points(PLATE) };
+        touched(p, r, k, &stated, (3, 4));
+    }),
+    case("coordinates", "points", |p, r, k| {
+        let grid = [[300.0, 0.0, 100.0], [0.0, 400.0, 200.0], [-300.0, 200.0, 0.0]];
+        touched(p, r, k, &Stated { frame: Some(Frame::Arm), ..points(&grid) }, (1, 12));
+    }),
+    case("ball bar of many balls in line", "points", |p, r, k| touched(p, r, k, &points(IN_LINE), (3, 6))),
+    case("ball", "sphere", |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false)),
+    case("ball of a diameter that may change", "sphere", |p, r, k| {
+        round(p, r, k, size("diameter", 1.2, 0.01, true), false)
+    }),
+    case("ball of unknown diameter", "sphere", |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false)),
+    case("hollow sphere", "sphere", |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), true)),
+    case("shaft", "cylinder", |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, false), false)),
+    case("bore of a diameter that may change", "cylinder", |p, r, k| {
+        round(p, r, k, size("diameter", 1.2, 0.01, true), true)
+    }),
+    case("shaft of unknown diameter", "cylinder", |p, r, k| round(p, r, k, size("diameter", 1.2, 0.0, true), false)),
+    case("distances", "distance", |p, r, k| distances(p, r, k, &[])),
+    case("distances of an instrument that may be off", "distance", |p, r, k| {
+        distances(p, r, k, &[size("offset", 5.0, 1.0, true), size("scale", 1.001, 0.01, true)])
+    }),
+    case("distances of an instrument of unknown scale", "distance", |p, r, k| {
+        distances(p, r, k, &[size("scale", 1.0, 0.0, true)])
+    }),
+    case("distances of an instrument of which nothing is known", "distance", |p, r, k| {
+        distances(p, r, k, &[size("offset", 5.0, 0.0, true), size("scale", 1.001, 0.0, true)])
+    }),
+    case("flat", "plane", |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14))),
+    // so many that no standing's balls leave its side undecided: there the cost has a kink
+    case("flat touched with two balls", "plane", |p, r, k| touched(p, r, k, &balls(&[6.0, 40.0]), (3, 16))),
 ];
 
-fn size(name: &str, value: f64, u: f64, fitted: bool) -> Size<'_> {
+const fn size(name: &str, value: f64, u: f64, fitted: bool) -> Size<'_> {
     Size { name, value, u, fitted }
 }
 
 fn points(features_mm: &[[f64; 3]]) -> Stated<'_> {
     Stated { name: "artefact", features_mm: Some(features_mm), ..Stated::default() }
+}
+
+/// The bar with what is stated of its length.
+fn bar<'a>(dimensions: &'a [Size<'a>]) -> Stated<'a> {
+    Stated { dimensions, ..points(BAR) }
 }
 
 fn balls(balls_mm: &[f64]) -> Stated<'_> {

@@ -41,12 +41,8 @@ pub fn cheng_2011(probes: &[(&str, [f64; 3])]) -> Arm {
         [0.1, -1.57, 30.0, 400.0],
         [2.3, 1.57, -30.0, 0.0],
     ];
-    let joint = |[theta0_rad, alpha_rad, a_mm, d_mm]: [f64; 4]| {
-        let (model, sign) = (JointModel::Dh, 1.0);
-        Joint { theta0_rad, alpha_rad, a_mm, d_mm, beta_rad: 0.0, sign, model }
-    };
     let probes = probes.iter().map(|&(name, tip_mm)| Probe { name: name.into(), tip_mm }).collect();
-    Arm::new(rows.map(joint).to_vec(), 1.0, probes).unwrap()
+    Arm::new(rows.map(Joint::dh).to_vec(), 1.0, probes).unwrap()
 }
 
 /// What some arms do beyond their geometry, larger than any arm would.

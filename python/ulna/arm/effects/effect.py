@@ -116,14 +116,3 @@ class Row:
     """Base of what a joint has of an effect: its fields of `ulna.Effects`."""
 
     effect: ClassVar[Effect]
-
-
-def missing(effect: type[Effect], owed: Mapping[str, str]) -> list[str]:
-    """What an effect has not got of what it owes, in words; owed: attribute → what it is."""
-    name = getattr(effect, "name", effect.__name__)
-    abstract: frozenset[str] = getattr(effect, "__abstractmethods__", frozenset())
-    return [
-        f"effect '{name}' lacks {attribute}: {what}"
-        for attribute, what in owed.items()
-        if not hasattr(effect, attribute) or attribute in abstract
-    ]

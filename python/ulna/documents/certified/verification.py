@@ -126,8 +126,8 @@ def _check_arm(file: VerificationFile, path: Path, calibration: Calibration, ite
     if strange or ("as-left" in states and not any(each.sha256 in calibrated for each in made.arms)):
         raise UlnaInputError(
             f"{path}: key 'provenance.arms': values were computed with {(strange or made.arms)[0].path}, another arm "
-            f"than that of {calibration.path}; expected tests of this calibration, as found also of the arm that it "
-            f"started from. Verify again with: ulna verify {calibration.path} PLAN"
+            f"than that of {calibration.file.path}; expected tests of this calibration, as found also of the arm that "
+            f"it started from. Verify again with: ulna verify {calibration.file.path} PLAN"
         )
 
 

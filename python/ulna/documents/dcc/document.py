@@ -99,7 +99,7 @@ def dcc_certificate(
     for tests in tested:
         conformity_statements(Sheet(languages, tests.source), data[-1], tests)
     measured = of_result.dcc(root, "measurementResults")
-    _calibration(of_result, of_laboratory, measured, found, stated, known, calibration.sha256)
+    _calibration(of_result, of_laboratory, measured, found, stated, known, calibration.file.sha256)
     for tests in tested:
         tests_result(Sheet(languages, tests.source), of_laboratory, measured, tests, known.file)
     etree.indent(root)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ulna.calibration.result import Result
-from ulna.documents.sources.source import Calibration
+from ulna.documents.sources.source import Calibration, ReadFile
 from ulna.formats.toml import read_bytes, sha256
 
 
@@ -18,4 +18,4 @@ def read_calibration(path: Path) -> Calibration:
     """A result.json, or the folder with it. Raises UlnaInputError."""
     file = result_file(path)
     found = Result.load(file)
-    return Calibration(found, file, sha256(read_bytes(file, "a result.json")))
+    return Calibration(found, ReadFile(file, sha256(read_bytes(file, "a result.json"))))

@@ -15,21 +15,25 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
+class ReadFile:
+    """A file that the document was made with, besides those that the result was made from."""
+
+    path: Path
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        """Without its folder."""
+        return self.path.name
+
+
+@dataclass(frozen=True)
 class Calibration:
     """The result that a document is about, as it was read; every source must be of it."""
 
     result: Result
-    path: Path
-    """Of the result.json."""
-    sha256: str
-
-
-@dataclass(frozen=True)
-class ReadFile:
-    """A file that the document was made with, besides those of the result."""
-
-    name: str
-    sha256: str
+    file: ReadFile
+    """The result.json."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,6 @@ class Taken(Generic[T]):
     """A source that was read and is of this arm, as far as can be told."""
 
     value: T
-    path: Path
     file: ReadFile
     remarks: list[Said]
 
@@ -71,4 +74,4 @@ class Taken(Generic[T]):
 def take(source: Source[T], path: Path, calibration: Calibration) -> Taken[T]:
     """Read and checked. Raises UlnaInputError."""
     value, digest = source.read(path, calibration)
-    return Taken(value, path, ReadFile(path.name, digest), source.remarks(value, path, calibration))
+    return Taken(value, ReadFile(path, digest), source.remarks(value, path, calibration))

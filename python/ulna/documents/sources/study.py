@@ -49,7 +49,7 @@ def _read(path: Path, calibration: Calibration) -> tuple[Study, str]:
 
 def _remarks(study: Study, path: Path, calibration: Calibration) -> list[Said]:
     """Another study than that of the result is refused."""
-    check_same(study, calibration.result.provenance, calibration.path)
+    check_same(study, calibration.result.provenance, calibration.file.path)
     _check_rows(study, calibration.result, path)
     return []
 
@@ -67,7 +67,7 @@ def find_study(calibration: Calibration, given: Path | None) -> FoundStudy:
     if name is None:
         return FoundStudy(None, _rows(made, lambda _: "not-compared"), Said("study.in-memory"))
     # the paths of a result are as seen from where it was made; the root in which the study is found is that place
-    root = next((root for root in (Path(), calibration.path.parent) if (root / name).is_file()), None)
+    root = next((root for root in (Path(), calibration.file.path.parent) if (root / name).is_file()), None)
     if root is None:
         return FoundStudy(None, _rows(made, lambda _: "not-compared"), Said("study.absent", {"study": name}))
     files = _rows(made, lambda file: _state(root / str(file["path"]), str(file["sha256"])))

@@ -17,8 +17,8 @@ from ulna.verification.result_file import SourceTable, VerificationFile, load_ve
 
 def calibrated_arms(calibration: Calibration) -> set[str]:
     """SHA-256 of the files that are this calibrated arm: the result, and the arm.toml beside it."""
-    beside = calibration.path.parent / "arm.toml"
-    return {calibration.sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
+    beside = calibration.file.path.parent / "arm.toml"
+    return {calibration.file.sha256} | ({sha256(read_bytes(beside, "an arm file"))} if beside.is_file() else set())
 
 
 def arms_before(calibration: Calibration) -> set[str]:

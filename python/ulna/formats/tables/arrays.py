@@ -84,6 +84,17 @@ class ArrayTable(Header):
     parts: Mapping[str, Column] = field(repr=False)
     """By the file's name of the column."""
 
+    @classmethod
+    def of(
+        cls, variables: Sequence[Variable], path: Path, layout: Layout, inner: Sequence[str], what: str
+    ) -> ArrayTable:
+        """The columns that variables make; inner: paths of what lies further in. Raises UlnaInputError where there are
+        none."""
+        columns = columns_of(variables, path)
+        if not columns:
+            raise no_arrays(path, layout, inner)
+        return cls(path, [name for name, _ in columns], parts=dict(columns), what=what)
+
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         parts = {name: self.parts[self.own(name)] for name in columns}
         for name, part in parts.items():

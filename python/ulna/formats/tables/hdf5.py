@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,17 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.formats.layout import Layout
-from ulna.formats.tables.arrays import (
-    NUMBERS,
-    TEXTS,
-    ArrayTable,
-    NoTextError,
-    Variable,
-    columns_of,
-    no_arrays,
-    no_such_part,
-    unreadable,
-)
+from ulna.formats.tables.arrays import NUMBERS, TEXTS, ArrayTable, NoTextError, Variable, no_such_part, unreadable
 from ulna.ground.arrays import Texts
 from ulna.ground.errors import UlnaInputError
 
@@ -36,12 +25,7 @@ def _h5py() -> Any:
     return h5py
 
 
-@dataclass(frozen=True)
-class Hdf5Table(ArrayTable):
-    """Data sets of an HDF5 file."""
-
-
-def open_hdf5(path: Path, start: bytes, what: str, layout: Layout) -> Hdf5Table:
+def open_hdf5(path: Path, start: bytes, what: str, layout: Layout) -> ArrayTable:
     """The data sets of one group, or one data set. Raises UlnaInputError for a damaged file."""
     try:
         with _h5py().File(path) as file:
@@ -55,10 +39,7 @@ def open_hdf5(path: Path, start: bytes, what: str, layout: Layout) -> Hdf5Table:
                 f"{path}: another program has this file open to write; expected one that is finished. Close it there."
             ) from None
         raise unreadable(path, "this looks like an HDF5 file, but", error, what) from None
-    columns = columns_of(variables, path)
-    if not columns:
-        raise no_arrays(path, layout, inner)
-    return Hdf5Table(path, [name for name, _ in columns], parts=dict(columns), what=what)
+    return ArrayTable.of(variables, path, layout, inner, what)
 
 
 def _place(file: Any, dataset: str | None) -> Any:

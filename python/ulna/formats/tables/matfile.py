@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,27 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.formats.layout import Layout
-from ulna.formats.tables.arrays import (
-    NUMBERS,
-    TEXTS,
-    ArrayTable,
-    NoTextError,
-    Variable,
-    columns_of,
-    no_arrays,
-    no_such_part,
-    unreadable,
-)
+from ulna.formats.tables.arrays import NUMBERS, TEXTS, ArrayTable, NoTextError, Variable, no_such_part, unreadable
 from ulna.formats.tables.mat5 import DamagedError, Entry, Strange, Struct, entries, value
 from ulna.ground.arrays import Texts
 
 
-@dataclass(frozen=True)
-class MatTable(ArrayTable):
-    """Variables of a MAT file."""
-
-
-def open_mat(path: Path, start: bytes, what: str, layout: Layout) -> MatTable:
+def open_mat(path: Path, start: bytes, what: str, layout: Layout) -> ArrayTable:
     """The variables of a file, or the fields of a struct in it. Raises UlnaInputError for a damaged file."""
     try:
         listed = entries(path)
@@ -45,11 +29,9 @@ def open_mat(path: Path, start: bytes, what: str, layout: Layout) -> MatTable:
             variables = {entry.name: _listed(path, entry) for entry in listed}
     except (DamagedError, RecursionError) as error:
         raise unreadable(path, "this looks like a MAT file, but", error, what) from None
-    structs = [name for name, variable in variables.items() if variable is None]
-    columns = columns_of([each for each in variables.values() if each is not None], path)
-    if not columns:
-        raise no_arrays(path, layout, ["/".join([*steps, name]) for name in structs])
-    return MatTable(path, [name for name, _ in columns], parts=dict(columns), what=what)
+    plain = [each for each in variables.values() if each is not None]
+    structs = ["/".join([*steps, name]) for name, variable in variables.items() if variable is None]
+    return ArrayTable.of(plain, path, layout, structs, what)
 
 
 def _listed(path: Path, entry: Entry) -> Variable | None:

@@ -14,7 +14,7 @@ from ulna.reproduce.ways.arms import ARMS, SIX, true_arm
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import WRONG_MM, Trial, calibrate, start_of
 from ulna.reproduce.ways.wang2007 import ARMS_FRAME
-from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.reproduce.ways.work import REPORTED, UNKNOWN, Found, Work
 from ulna.simulation.virtual_arm import VirtualArm
 
 
@@ -65,7 +65,7 @@ def _claims(found: Found) -> list[Claim]:
 WORK = Work(
     name="cheng2010",
     title="Cheng, Fei, Yu 2010: a probe from one seat",
-    source="Facts as Cheng, Yu, Fei 2011 report them.",
+    source=REPORTED,
     chosen="Chosen by us: joints from a bar in 140 places with a bent probe, then 32 poses of a straight probe in one "
     "seat that stands anywhere. The count of the model is asked of coordinates, as in wang2007.",
     ways=(PROBE, ARMS_FRAME),

@@ -8,7 +8,7 @@ from ulna.reproduce.ways.arms import ARMS, SEVEN, SIX
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, start_of
-from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.reproduce.ways.work import ERRORS_BELOW, REPORTED, UNKNOWN, Found, Work
 from ulna.simulation.virtual_arm import VirtualArm
 
 
@@ -55,7 +55,7 @@ def _claims(found: Found) -> list[Claim]:
             f"leave the scale open ({scale[0]} combination less): {_pair(by_arm[POINTS.label])} µm",
             None,
         ),
-        Claim("errors of the calibrated arm", UNKNOWN, "in the table below", None),
+        ERRORS_BELOW,
     ]
 
 
@@ -66,7 +66,7 @@ def _pair(values: list[float]) -> str:
 WORK = Work(
     name="santolaria2010",
     title="Santolaria, Aguilar 2010: a bar of 14 balls, points and lengths together",
-    source="Facts as Cheng, Yu, Fei 2011 report them.",
+    source=REPORTED,
     chosen="Chosen by us: balls 60 mm apart in a line, five places, each ball in four poses. Lengths: between balls "
     "seven apart.",
     ways=(TOGETHER, POINTS, LENGTHS),

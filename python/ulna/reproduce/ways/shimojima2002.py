@@ -7,7 +7,7 @@ from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import ARMS, SIX
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import calibrate, start_of
-from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.reproduce.ways.work import ERRORS_BELOW, REPORTED, UNKNOWN, Found, Work
 
 PLATE = Way(
     "ball plate",
@@ -35,14 +35,14 @@ def _claims(found: Found) -> list[Claim]:
             "of every parameter; true error within twice it in " + ", ".join(f"{100 * s:.0f} %" for s in shares),
             all(COVERED[0] <= share <= COVERED[1] for share in shares),
         ),
-        Claim("errors of the calibrated arm", UNKNOWN, "in the table below", None),
+        ERRORS_BELOW,
     ]
 
 
 WORK = Work(
     name="shimojima2002",
     title="Shimojima, Furutani, Takamasu 2002: a ball plate",
-    source="Facts as Cheng, Yu, Fei 2011 report them.",
+    source=REPORTED,
     chosen="Chosen by us: 28 balls 100 mm apart, ten places, each ball touched once with a self-centring probe.",
     ways=(PLATE,),
     claims=_claims,

@@ -8,7 +8,7 @@ from ulna.reproduce.ways.arms import ARMS, SIX
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.redundant import determined_of_full_link
 from ulna.reproduce.ways.trial import Trial, calibrate, start_of
-from ulna.reproduce.ways.work import UNKNOWN, Found, Work
+from ulna.reproduce.ways.work import ERRORS_BELOW, UNKNOWN, Found, Work
 from ulna.simulation.virtual_arm import VirtualArm
 
 
@@ -45,7 +45,7 @@ def _claims(found: Found) -> list[Claim]:
             f"{by_arm[1][1]:.1f} µm unknown",
             None,
         ),
-        Claim("errors of the calibrated arm", UNKNOWN, "in the table below", None),
+        ERRORS_BELOW,
     ]
 
 

@@ -7,7 +7,7 @@ from ulna.reproduce.ways import readings
 from ulna.reproduce.ways.arms import SEVEN
 from ulna.reproduce.ways.outcome import Way
 from ulna.reproduce.ways.trial import Trial, calibrate, search_alone, start_of
-from ulna.reproduce.ways.work import UNKNOWN, Found, Work, same_optimum
+from ulna.reproduce.ways.work import REPORTED, UNKNOWN, Found, Work, same_optimum
 from ulna.simulation.virtual_arm import VirtualArm
 
 
@@ -50,7 +50,7 @@ def _claims(found: Found) -> list[Claim]:
 WORK = Work(
     name="wang2010",
     title="Wang X. et al. 2010: an evolutionary search on an arm of seven axes",
-    source="Facts as Cheng, Yu, Fei 2011 report them.",
+    source=REPORTED,
     chosen="Chosen by us: a bar in 140 places. The evolution is SciPy's differential one, at most 100 000 evaluations.",
     ways=(BARS, ALONE),
     claims=_claims,

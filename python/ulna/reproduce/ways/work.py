@@ -25,6 +25,9 @@ from ulna.reproduce.ways.trial import FRESH_BARS, WRONG_MM, WRONG_RAD
 REPEATS = 10
 
 UNKNOWN = "not known to us"
+ERRORS_BELOW = Claim("errors of the calibrated arm", UNKNOWN, "in the table below", None)
+REPORTED = "Facts as Cheng, Yu, Fei 2011 report them."
+"""Where we have the figures of older works from."""
 
 SAME = 1e-6
 """Relative: two fits whose sums of squares are closer than this are at the same optimum."""

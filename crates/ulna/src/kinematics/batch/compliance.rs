@@ -5,8 +5,9 @@
 //! parameter by the gradient of `Σ w_i M_i`: the derivative of `pull · S` along the turns w, differentiated once more, by
 //! carrying S together with its tangent out and their adjoints back.
 
+use super::turned::turned;
 use crate::kinematics::carried::Carried;
-use crate::kinematics::chain::Chain;
+use crate::kinematics::chain::{Chain, Link};
 use crate::kinematics::poses::Poses;
 use crate::simd::Lanes;
 use pulp::Simd;
@@ -30,6 +31,28 @@ fn load<S: Simd>(simd: S, region: &[f64], i: usize, slot: usize) -> Lanes<S> {
     Lanes::load(simd, region, i * SLOTS + slot)
 }
 
+/// Carries a vector from the next joint's frame in over beta and alpha; leaves at `of` what the derivatives need of it.
+#[inline(always)]
+fn before_tilts<S: Simd>(
+    simd: S,
+    link: &Link,
+    [mut x, mut y, mut z]: [Lanes<S>; 3],
+    region: &mut [f64],
+    of: usize,
+) -> [Lanes<S>; 3] {
+    let c = |value: f64| Lanes::splat(simd, value);
+    if let Some((cos_beta, sin_beta)) = link.beta {
+        [x, z] = turned([x, z], c(sin_beta), c(cos_beta));
+        x.store(region, of + 3);
+        z.store(region, of + 4);
+    }
+    if !link.bare {
+        [z, y] = turned([z, y], c(link.sin_alpha), c(link.cos_alpha));
+        z.store(region, of + 2);
+    }
+    [x, y, z]
+}
+
 /// Carries all weight of vector `k` of poses to the base and the pull back out: leaves the moments in the region.
 #[inline(always)]
 pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses: &Poses, k: usize, region: &mut [f64]) {
@@ -40,18 +63,8 @@ pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses:
         let body = carried.first_moments[i];
         let mass = carried.masses[i];
         (x, y, z) = (x + c(body[0]), y + c(body[1]), z + c(body[2]));
-        if let Some((cos_beta, sin_beta)) = link.beta {
-            let before = x;
-            x = z.mul_add(c(sin_beta), before * c(cos_beta));
-            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
-            x.store(region, slot + BODY + 3);
-            z.store(region, slot + BODY + 4);
-        }
+        [x, y, z] = before_tilts(simd, link, [x, y, z], region, slot + BODY);
         if !link.bare {
-            let before = y;
-            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
-            z.store(region, slot + BODY + 2);
             x = x + c(mass * link.a);
             z = z + c(mass * link.d);
         }
@@ -60,16 +73,12 @@ pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses:
         cos.store(region, slot + COS);
         x.store(region, slot + BODY);
         y.store(region, slot + BODY + 1);
-        let before = x;
-        x = y.neg_mul_add(sin, before * cos);
-        y = before.mul_add(sin, y * cos);
+        [y, x] = turned([y, x], sin, cos);
     }
     let [mut gx, mut gy, mut gz] = carried.pull.map(c);
     for (i, link) in chain.links.iter().enumerate() {
         let (sin, cos) = (load(simd, region, i, SIN), load(simd, region, i, COS));
-        let before = gx;
-        gx = gy.mul_add(sin, before * cos);
-        gy = before.neg_mul_add(sin, gy * cos);
+        [gx, gy] = turned([gx, gy], sin, cos);
         let (x, y) = (load(simd, region, i, BODY), load(simd, region, i, BODY + 1));
         for (axis, g) in [gx, gy, gz].into_iter().enumerate() {
             g.store(region, i * SLOTS + PULL + axis);
@@ -78,13 +87,9 @@ pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses:
         if link.bare {
             continue;
         }
-        let before = gy;
-        gy = gz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-        gz = before.neg_mul_add(c(link.sin_alpha), gz * c(link.cos_alpha));
+        [gy, gz] = turned([gy, gz], c(link.sin_alpha), c(link.cos_alpha));
         if let Some((cos_beta, sin_beta)) = link.beta {
-            let before = gx;
-            gx = gz.neg_mul_add(c(sin_beta), before * c(cos_beta));
-            gz = before.mul_add(c(sin_beta), gz * c(cos_beta));
+            [gz, gx] = turned([gz, gx], c(sin_beta), c(cos_beta));
         }
     }
 }
@@ -116,18 +121,8 @@ pub(super) fn derivatives<S: Simd>(
     let [mut x, mut y, mut z] = [zero; 3];
     for (i, link) in chain.links.iter().enumerate().rev() {
         let slot = i * SLOTS;
-        if let Some((cos_beta, sin_beta)) = link.beta {
-            let before = x;
-            x = z.mul_add(c(sin_beta), before * c(cos_beta));
-            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
-            x.store(region, slot + TANGENT + 3);
-            z.store(region, slot + TANGENT + 4);
-        }
+        [x, y, z] = before_tilts(simd, link, [x, y, z], region, slot + TANGENT);
         if !link.bare {
-            let before = y;
-            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
-            z.store(region, slot + TANGENT + 2);
             y.store(region, slot + TANGENT + 1);
         }
         let w = load(simd, region, i, WEIGHT);
@@ -137,17 +132,14 @@ pub(super) fn derivatives<S: Simd>(
         // of the frame after the turn are x and y; the link's own y stays as it is
         turned_x.store(region, slot + TANGENT);
         let (sin, cos) = (load(simd, region, i, SIN), load(simd, region, i, COS));
-        x = turned_y.neg_mul_add(sin, turned_x * cos);
-        y = turned_x.mul_add(sin, turned_y * cos);
+        [y, x] = turned([turned_y, turned_x], sin, cos);
     }
     // the adjoint of S, carried back out; that of the tangent is the pull
     let [mut hx, mut hy, mut hz] = [zero; 3];
     for (i, link) in chain.links.iter().enumerate() {
         let at = |slot: usize| load(simd, region, i, slot);
         let (sin, cos, w) = (at(SIN), at(COS), at(WEIGHT));
-        let before = hx;
-        hx = hy.mul_add(sin, before * cos);
-        hy = before.neg_mul_add(sin, hy * cos);
+        [hx, hy] = turned([hx, hy], sin, cos);
         let (x, y, link_y) = (at(BODY), at(BODY + 1), at(TANGENT + 1));
         let (gx, gy, gz) = (at(PULL), at(PULL + 1), at(PULL + 2));
         let turned_x = at(TANGENT);
@@ -163,9 +155,7 @@ pub(super) fn derivatives<S: Simd>(
         let (z, link_z) = (at(BODY + 2), at(TANGENT + 2));
         let alpha = hz.mul_add(y, -(hy * z)) + gz.mul_add(link_y, -(gy * link_z));
         let (a, d) = (hx * mass, hz * mass);
-        let before = hy;
-        hy = hz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-        hz = before.neg_mul_add(c(link.sin_alpha), hz * c(link.cos_alpha));
+        [hy, hz] = turned([hy, hz], c(link.sin_alpha), c(link.cos_alpha));
         let mut fourth = d;
         if let Some((cos_beta, sin_beta)) = link.beta {
             // the pull in the frame between alpha and beta
@@ -173,9 +163,7 @@ pub(super) fn derivatives<S: Simd>(
             let (x, z) = (at(BODY + 3), at(BODY + 4));
             let (tangent_x, tangent_z) = (at(TANGENT + 3), at(TANGENT + 4));
             fourth = hx.mul_add(z, -(hz * x)) + gx.mul_add(tangent_z, -(between * tangent_x));
-            let before = hx;
-            hx = hz.neg_mul_add(c(sin_beta), before * c(cos_beta));
-            hz = before.mul_add(c(sin_beta), hz * c(cos_beta));
+            [hz, hx] = turned([hz, hx], c(sin_beta), c(cos_beta));
         }
         each(i, [turn, alpha, a, fourth]);
     }

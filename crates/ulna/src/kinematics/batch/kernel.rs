@@ -6,6 +6,7 @@
 //! direction or three, so the 3 × parameters Jacobian of a pose is never formed.
 
 use super::compliance;
+use super::turned::turned;
 use crate::kinematics::chain::{Chain, Link};
 use crate::kinematics::poses::{EncoderOf, Poses};
 use crate::simd::{Lanes, PAD};
@@ -78,6 +79,7 @@ pub(crate) fn forward<S: Simd>(
     )
 }
 
+/// [`forward`] of an arm with effects.
 struct ForwardWithEffects<'a, S: Simd> {
     simd: S,
     chain: &'a Chain,
@@ -92,67 +94,55 @@ impl<S: Simd> NullaryFnOnce for ForwardWithEffects<'_, S> {
     #[inline(always)]
     fn call(self) -> [Lanes<S>; 3] {
         let ForwardWithEffects { simd, chain, poses, k, tip, scratch } = self;
-        forward_with_effects(simd, chain, poses, k, tip, scratch)
+        let c = |value: f64| Lanes::splat(simd, value);
+        let layout = Layout::of(chain);
+        if let Some(carried) = &chain.carried {
+            compliance::prepare(simd, chain, carried, poses, k, region::<S>(scratch, layout.compliance));
+        }
+        let last = chain.links.len() - 1;
+        let stretch = |i: usize| {
+            let epsilon = chain.effects.expansion.as_ref().map_or(0.0, |expansion| expansion.per_kelvin[i]);
+            poses.warmth(simd, i, k).mul_add(c(epsilon), c(1.0))
+        };
+        let own = |scratch: &mut [f64], i: usize, slot: usize, value: Lanes<S>| {
+            value.store(scratch, layout.effects + i * EFFECT_SLOTS + slot);
+        };
+        for (axis, value) in tip.into_iter().enumerate() {
+            value.store(scratch, layout.tip + axis);
+        }
+        let stretched = tip.map(|value| value * stretch(last));
+        carry(
+            simd,
+            chain,
+            stretched,
+            scratch,
+            #[inline(always)]
+            |scratch, i, link| {
+                let mut added = c(0.0);
+                chain.effects.shapes_in_lanes(
+                    simd,
+                    i,
+                    &EncoderOf { simd, poses, joint: i, k },
+                    #[inline(always)]
+                    |parameter, value, shape| {
+                        shape.store(scratch, layout.shapes + parameter);
+                        added = shape.mul_add(c(value), added);
+                    },
+                );
+                added = added * c(link.sign);
+                if let Some(compliance) = &chain.effects.compliance {
+                    let moment = compliance::moment(simd, region::<S>(scratch, layout.compliance), i);
+                    added = moment.mul_add(c(compliance.rad_per_nm[i]), added);
+                }
+                let (sin, cos) = poses.turn(simd, link, i, k);
+                let (sin_added, cos_added) = added.sin_cos();
+                let turn = (sin.mul_add(cos_added, cos * sin_added), sin.neg_mul_add(sin_added, cos * cos_added));
+                own(scratch, i, 0, poses.warmth(simd, i, k));
+                own(scratch, i, 1, stretch(i));
+                (turn, Some(stretch(i)))
+            },
+        )
     }
-}
-
-#[inline(always)]
-fn forward_with_effects<S: Simd>(
-    simd: S,
-    chain: &Chain,
-    poses: &Poses,
-    k: usize,
-    tip: [Lanes<S>; 3],
-    scratch: &mut [f64],
-) -> [Lanes<S>; 3] {
-    let c = |value: f64| Lanes::splat(simd, value);
-    let layout = Layout::of(chain);
-    if let Some(carried) = &chain.carried {
-        compliance::prepare(simd, chain, carried, poses, k, region::<S>(scratch, layout.compliance));
-    }
-    let last = chain.links.len() - 1;
-    let stretch = |i: usize| {
-        let epsilon = chain.effects.expansion.as_ref().map_or(0.0, |expansion| expansion.per_kelvin[i]);
-        poses.warmth(simd, i, k).mul_add(c(epsilon), c(1.0))
-    };
-    let own = |scratch: &mut [f64], i: usize, slot: usize, value: Lanes<S>| {
-        value.store(scratch, layout.effects + i * EFFECT_SLOTS + slot);
-    };
-    for (axis, value) in tip.into_iter().enumerate() {
-        value.store(scratch, layout.tip + axis);
-    }
-    let stretched = tip.map(|value| value * stretch(last));
-    carry(
-        simd,
-        chain,
-        stretched,
-        scratch,
-        #[inline(always)]
-        |scratch, i, link| {
-            let mut added = c(0.0);
-            chain.effects.shapes_in_lanes(
-                simd,
-                i,
-                &EncoderOf { simd, poses, joint: i, k },
-                #[inline(always)]
-                |parameter, value, shape| {
-                    shape.store(scratch, layout.shapes + parameter);
-                    added = shape.mul_add(c(value), added);
-                },
-            );
-            added = added * c(link.sign);
-            if let Some(compliance) = &chain.effects.compliance {
-                let moment = compliance::moment(simd, region::<S>(scratch, layout.compliance), i);
-                added = moment.mul_add(c(compliance.rad_per_nm[i]), added);
-            }
-            let (sin, cos) = poses.turn(simd, link, i, k);
-            let (sin_added, cos_added) = added.sin_cos();
-            let turn = (sin.mul_add(cos_added, cos * sin_added), sin.neg_mul_add(sin_added, cos * cos_added));
-            own(scratch, i, 0, poses.warmth(simd, i, k));
-            own(scratch, i, 1, stretch(i));
-            (turn, Some(stretch(i)))
-        },
-    )
 }
 
 /// Carries a point to the base; `turn` gives sine and cosine of each turn, and how far the link is stretched.
@@ -170,16 +160,12 @@ fn carry<S: Simd>(
         let slot = i * SLOTS;
         let ((sin, cos), stretch) = turn(scratch, i, link);
         if let Some((cos_beta, sin_beta)) = link.beta {
-            let before = x;
-            x = z.mul_add(c(sin_beta), before * c(cos_beta));
-            z = before.neg_mul_add(c(sin_beta), z * c(cos_beta));
+            [x, z] = turned([x, z], c(sin_beta), c(cos_beta));
             x.store(scratch, slot + 5);
             z.store(scratch, slot + 6);
         }
         if !link.bare {
-            let before = y;
-            y = z.neg_mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-            z = before.mul_add(c(link.sin_alpha), z * c(link.cos_alpha));
+            [z, y] = turned([z, y], c(link.sin_alpha), c(link.cos_alpha));
             z.store(scratch, slot + 4);
             (x, z) = match stretch {
                 None => (x + c(link.a), z + c(link.d)),
@@ -190,9 +176,7 @@ fn carry<S: Simd>(
         cos.store(scratch, slot + 1);
         x.store(scratch, slot + 2);
         y.store(scratch, slot + 3);
-        let before = x;
-        x = y.neg_mul_add(sin, before * cos);
-        y = before.mul_add(sin, y * cos);
+        [y, x] = turned([y, x], sin, cos);
     }
     [x, y, z]
 }
@@ -359,9 +343,7 @@ fn through<S: Simd>(simd: S, link: &Link, i: usize, scratch: &[f64], direction: 
     let at = |slot: usize| Lanes::load(simd, scratch, i * SLOTS + slot);
     let [mut gx, mut gy, mut gz] = *direction;
     let (sin, cos, x, y) = (at(0), at(1), at(2), at(3));
-    let before = gx;
-    gx = gy.mul_add(sin, before * cos);
-    gy = before.neg_mul_add(sin, gy * cos);
+    [gx, gy] = turned([gx, gy], sin, cos);
     // direction · (z × p) = x gy - y gx
     let turn = x.mul_add(gy, -(y * gx));
     if link.bare {
@@ -370,16 +352,12 @@ fn through<S: Simd>(simd: S, link: &Link, i: usize, scratch: &[f64], direction: 
     }
     let z = at(4);
     let (alpha, a, d) = (gz.mul_add(y, -(gy * z)), gx, gz);
-    let before = gy;
-    gy = gz.mul_add(c(link.sin_alpha), before * c(link.cos_alpha));
-    gz = before.neg_mul_add(c(link.sin_alpha), gz * c(link.cos_alpha));
+    [gy, gz] = turned([gy, gz], c(link.sin_alpha), c(link.cos_alpha));
     let mut fourth = d;
     if let Some((cos_beta, sin_beta)) = link.beta {
         let (x, z) = (at(5), at(6));
         fourth = gx.mul_add(z, -(gz * x));
-        let before = gx;
-        gx = gz.neg_mul_add(c(sin_beta), before * c(cos_beta));
-        gz = before.mul_add(c(sin_beta), gz * c(cos_beta));
+        [gz, gx] = turned([gz, gx], c(sin_beta), c(cos_beta));
     }
     *direction = [gx, gy, gz];
     [turn, alpha, a, fourth]

@@ -3,6 +3,7 @@
 mod compliance;
 mod kernel;
 mod sweep;
+mod turned;
 
 pub(crate) use kernel::{forward, gradient, gradient_between, scratch_len};
 pub use sweep::{for_each_derivative, tips_from_rows_mm, tips_mm, tips_of_probe_mm};

@@ -6,7 +6,7 @@ use crate::arm::Seen;
 use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::model::At;
 use crate::artefacts::noise::{Noise, Weighing, normal};
-use crate::artefacts::readings::Readings;
+use crate::artefacts::readings::{Again, Readings};
 use crate::artefacts::residuals::{Unweighted, Whitened};
 use crate::artefacts::stated::Rows;
 use crate::artefacts::writer::Writer;
@@ -224,14 +224,8 @@ impl Readings for Lengths {
         self.runs.iter().flat_map(|run| [run.from.seen(), run.to.seen()]).reduce(Seen::and).unwrap_or_default()
     }
 
-    fn taken_anew(
-        &self,
-        truth: At,
-        calibrated: &[f64],
-        noise: &Noise,
-        rng: &mut Xoshiro256PlusPlus,
-    ) -> Box<dyn Readings> {
-        Box::new(self.drawn(truth, calibrated, noise, rng))
+    fn taken_anew(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        Box::new(self.drawn(again, rng))
     }
 
     fn thinned(&self, most: usize) -> Box<dyn Readings> {
@@ -245,7 +239,8 @@ impl Readings for Lengths {
 
 impl Lengths {
     /// See [`Readings::taken_anew`].
-    pub fn drawn(&self, truth: At, calibrated: &[f64], noise: &Noise, rng: &mut Xoshiro256PlusPlus) -> Lengths {
+    pub fn drawn(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Lengths {
+        let Again { truth, calibrated, noise } = *again;
         let mut drawn = self.clone();
         // the length is what it is; its calibration is another
         let error =

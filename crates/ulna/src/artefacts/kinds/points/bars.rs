@@ -11,7 +11,7 @@ use crate::artefacts::dimension::{Dimension, Unknowns};
 use crate::artefacts::kinds::length::Lengths;
 use crate::artefacts::model::{At, Model};
 use crate::artefacts::noise::{Noise, Weighing};
-use crate::artefacts::readings::Readings;
+use crate::artefacts::readings::{Again, Readings};
 use crate::artefacts::residuals::{Unweighted, Whitened};
 use crate::artefacts::writer::Writer;
 use crate::error::Result;
@@ -222,14 +222,8 @@ impl Readings for Bars {
         self.lengths.seen()
     }
 
-    fn taken_anew(
-        &self,
-        truth: At,
-        calibrated: &[f64],
-        noise: &Noise,
-        rng: &mut Xoshiro256PlusPlus,
-    ) -> Box<dyn Readings> {
-        let lengths = self.lengths.drawn(truth, calibrated, noise, rng);
+    fn taken_anew(&self, again: &Again, rng: &mut Xoshiro256PlusPlus) -> Box<dyn Readings> {
+        let lengths = self.lengths.drawn(again, rng);
         Box::new(Bars { lengths, ends: self.ends.clone(), weights: self.weights.clone() })
     }
 
