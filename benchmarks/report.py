@@ -69,6 +69,7 @@ def _kinds(kinds: list[tuple[str, float]]) -> list[str]:
     return [
         "\n## What a reading costs\n",
         "Residuals and Jacobian of one touch, its share of the placement eliminated. A bar has both ends touched once "
-        "in each place, a plate its nine balls; a seat and every surface are touched 20 times, a distance is read 20 times.\n",
+        "in each place, a plate its nine balls; a seat and every surface are touched 20 times, a distance is read 20 "
+        "times.\n",
         "\n".join(lines),
     ]

@@ -58,8 +58,8 @@ def test_coordinates_are_never_explained_by_the_mirror_image(seed: int, joints: 
 @pytest.mark.parametrize("kind", ["sphere", "plane", "cylinder", "seat"])
 @pytest.mark.parametrize("seed", range(3))
 def test_an_arm_that_does_not_move_is_not_an_arm(seed: int, kind: str) -> None:
-    """Whatever passes through a tip that stands still explains it exactly; a fit ends at an arm as long as the drawn one,
-    or not well."""
+    """Whatever passes through a tip that stands still explains it exactly; a fit ends at an arm about as long as the
+    drawn one, or not well."""
     rng = np.random.default_rng(seed)
     truth = table_4()
     make = {

@@ -118,7 +118,12 @@ def beyond_geometry() -> Result:
     ]
     found = dataclasses.replace(plain.identifiability, from_prior=[f"joint.{k}.c1" for k in range(1, 8)])
     fit = dataclasses.replace(
-        plain.fit, loss="huber", method="annealing", box_evaluations=100_000, undecided_signs=[[2], [1, 3, 5, 7]], mirrored_signs=[[1, 3, 5, 7]]
+        plain.fit,
+        loss="huber",
+        method="annealing",
+        box_evaluations=100_000,
+        undecided_signs=[[2], [1, 3, 5, 7]],
+        mirrored_signs=[[1, 3, 5, 7]],
     )
     return dataclasses.replace(plain, parameters=rows, extras=extras, outliers=far, identifiability=found, fit=fit)
 

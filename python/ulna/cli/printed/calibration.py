@@ -63,14 +63,14 @@ def ending(fit: FitSummary) -> str:
 
 
 def _signs(fit: FitSummary) -> str:
-    """What is not told of the signs: which turn the arm into its mirror image, and how to decide; which change nothing."""
+    """What is not told of the signs: which make it the mirror image, and how to decide; which change nothing."""
     text = ""
     if fit.mirrored_signs:
         text += (
             " x, y and z may be mirror-imaged: these readings do not tell this arm from its mirror image, in which "
-            f"{_joints(fit.mirrored_signs)} the other way. To decide, turn one of these joints counter-clockwise, looked "
-            "at from the end of its z axis in the arm file: with sign = 1 its count rises. State that sign and calibrate "
-            "again."
+            f"{_joints(fit.mirrored_signs)} the other way. To decide, turn one of these joints counter-clockwise, "
+            "looked at from the end of its z axis in the arm file: with sign = 1 its count rises. State that sign and "
+            "calibrate again."
         )
     same = [joints for joints in fit.undecided_signs if joints not in fit.mirrored_signs]
     if same:
