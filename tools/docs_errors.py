@@ -109,7 +109,6 @@ CASES: dict[str, dict[str, Break]] = {
         "NaN": cell(17, 4, "nan"),
         "degrees read as radians": degrees,
         "decimal commas": decimal_commas,
-        "a blank line in between": cell(17, 8, "0.1\n"),
     },
     "Tables of others": {
         "a column that is not there": mapped('columns = { q1 = "sholder" }'),
