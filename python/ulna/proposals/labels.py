@@ -80,7 +80,7 @@ def feature_labels(
 
 
 def matched_labels(labels: Sequence[str], features: Sequence[str], alike: bool) -> dict[str, list[str]] | None:
-    """Feature → its labels in the file; None where that is not certain. alike: any two will do, in their order."""
+    """Feature → its labels in the file; None where that is not certain. alike: which is which does not matter."""
     groups: dict[str, list[str]] = {}
     for label in labels:
         groups.setdefault(" ".join(label.casefold().split()), []).append(label)
@@ -94,7 +94,7 @@ def matched_labels(labels: Sequence[str], features: Sequence[str], alike: bool) 
         ):
             return {ours[theirs[key]]: group for key, group in groups.items()}
     if alike and len(groups) == len(features):
-        return dict(zip(features, [groups[key] for key in sorted(groups)], strict=True))
+        return dict(zip(features, groups.values(), strict=True))
     return None
 
 
