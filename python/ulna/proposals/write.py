@@ -75,7 +75,7 @@ def study_text(proposal: Proposal, folder: Path) -> str:
     lines += ["", "[fit]"]
     if proposal.search:
         lines.append('start = "search"    # the encoders\' zeros are not known: find them')
-    lines.append('loss = "huber"      # readings that are far off count less, and are named; "none": by their squares')
+    lines.append('loss = "cauchy"     # readings that are far off count less, and are named; "none": by their squares')
     lines += ["", _comment("[noise]"), _comment("encoder and seat: standard deviations of the readings, where known")]
     return "\n".join(lines) + "\n"
 

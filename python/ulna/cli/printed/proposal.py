@@ -48,4 +48,4 @@ def _settled(proposal: Proposal) -> Iterator[tuple[str, str]]:
     yield "touched", ", ".join([str(proposal.stated.keys["kind"]), *dimensions]) + f" ({proposal.stated.length_unit})"
     if "where" in proposal.entry:
         yield "left out", "rows in which an axis has no number"
-    yield "far off", 'readings that do not fit count less (loss = "huber"), and calibrate names them'
+    yield "far off", 'readings that do not fit count less (loss = "cauchy"), and calibrate names them'
