@@ -69,7 +69,7 @@ def angles_of(
     raise UlnaInputError(
         f"{path}: no columns of angles are recognised among {there[:200]}; expected one for each axis, with its "
         "number, such as 'q1', 'Axis 1', 'Achse 1' or '轴1'. Say which they are, from the base on: "
-        "--column q1=NAME --column q2=NAME …"
+        "--column q1=NAME --column q2=NAME and so on."
     )
 
 

@@ -117,6 +117,7 @@ _READ: dict[str, Any] = {
     "length": _number,
     "diameter": _number,
     "reach": _number,
+    "ball": _number,
     "counts_per_turn": _numbers,
 }
 #: fields that take several answers

@@ -99,6 +99,8 @@ def propose(answers: Answers) -> Proposal:
     questions += labels.questions
     bad = _bad_cells(header, angles, answers)
     questions += [bad] if isinstance(bad, Question) else []
+    if drawn is not None:
+        questions += _ball(what, drawn, answers, path)
     if questions or drawn is None or isinstance(unit, Question) or isinstance(bad, Question):
         raise UnansweredError(str(path), questions)
     probes = _probe_names(columns, labels, drawn, path, dict(layout.names))
@@ -161,6 +163,17 @@ def _labels(answers: Answers, columns: Sequence[Column], angles: Angles, what: S
             rest.remove(column)
     other_labels(rest, None if artefact.length_mm is not None else kind.measured_column, layout.columns, found)
     return found
+
+
+def _ball(what: Stated, drawn: Drawn, answers: Answers, path: Path) -> list[Question]:
+    """Of the probe, where the kind cannot do without."""
+    if answers.ball is not None:
+        return []
+    try:
+        kind_of(what.artefact).check_probes(what.artefact, drawn.arm, range(len(drawn.arm.probes)), str(path))
+    except UlnaInputError:
+        return [Question("ball", "--ball MM", "what is the diameter of the probe's ball, in mm")]
+    return []
 
 
 def _bad_cells(header: Header, angles: Angles, answers: Answers) -> dict[str, Any] | Question:

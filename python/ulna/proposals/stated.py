@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.features import COLUMNS, WHAT
+from ulna.artefacts.features import WHAT
 from ulna.artefacts.kinds import KINDS, made
 from ulna.artefacts.tables import Place
 from ulna.formats.layout import Layout, TableKeys
@@ -119,7 +119,7 @@ def _features(answers: Answers, label: Path) -> tuple[dict[str, Any], str | Ques
     path = answers.features
     assert path is not None
     layout, seen = seen_dialect(path, Layout.of_options(), WHAT)
-    columns = columns_of(read_header(path, WHAT, layout, COLUMNS))
+    columns = columns_of(read_header(path, WHAT, layout))
     taken: dict[str, Column] = {}
     for column in columns:
         bare = column.name.casefold().partition("[")[0].partition("(")[0].strip()
