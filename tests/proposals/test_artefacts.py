@@ -93,9 +93,11 @@ def test_a_plate_as_people_keep_it(tmp_path: Path) -> None:
     rows = [f"Kugel {name[1:]};" + ";".join(str(v).replace(".", ",") for v in xyz) for name, xyz in CORNERS.items()]
     plate = tmp_path / "platte.csv"
     plate.write_bytes("\n".join(["Kugel;X [mm];Y [mm];Z [mm]", *rows, ""]).encode("cp1252"))
-    said = Answers(readings=tmp_path / "table.csv", artefact="points", reach=1000.0)
+    said = Answers(readings=tmp_path / "table.csv", artefact="points", reach=1000.0, parallel=("none",))
     assert asked(said) == ["features"]
-    found = propose(Answers(readings=tmp_path / "table.csv", artefact="points", reach=1000.0, features=plate))
+    found = propose(
+        Answers(readings=tmp_path / "table.csv", artefact="points", reach=1000.0, parallel=("none",), features=plate)
+    )
     assert found.entry["names"]["feature"]["Kugel 3"] == "ball 3"
     write_proposal(found, tmp_path / "study")
     with warnings.catch_warnings():
@@ -112,7 +114,12 @@ def test_coordinates_without_a_unit_are_asked_about(tmp_path: Path) -> None:
     rows = "".join(f"1,{k}.5,1.5,0.5,2.5,1.25,{k % 3}.75,{'abc'[k % 3]}\n" for k in range(9))
     (tmp_path / "table.csv").write_text(f"setup,q1,q2,q3,q4,q5,q6,point\n{rows}")
     said = Answers(
-        readings=tmp_path / "table.csv", artefact="points", features=tmp_path / "plate.csv", reach=900.0, angle="rad"
+        readings=tmp_path / "table.csv",
+        artefact="points",
+        features=tmp_path / "plate.csv",
+        reach=900.0,
+        parallel=("none",),
+        angle="rad",
     )
     assert asked(said) == ["length_unit"]
 
@@ -121,7 +128,13 @@ def test_a_ball_that_matters_is_asked_about(tmp_path: Path) -> None:
     rows = "".join(f"1,{k}.5,1.5,0.5,2.5,1.25,{k % 3}.75\n" for k in range(9))
     (tmp_path / "table.csv").write_text(f"setup,q1,q2,q3,q4,q5,q6\n{rows}")
     said = Answers(
-        readings=tmp_path / "table.csv", artefact="sphere", diameter=25.4, reach=900.0, angle="rad", one_standing=True
+        readings=tmp_path / "table.csv",
+        artefact="sphere",
+        diameter=25.4,
+        reach=900.0,
+        parallel=("none",),
+        angle="rad",
+        one_standing=True,
     )
     assert asked(said) == ["ball"]
     assert propose(replace(said, ball=6.0)).arm.probes["tip"].ball_mm == 6.0

@@ -24,7 +24,7 @@ from tests.home_built import (
     workbook,
 )
 
-from ulna import Arm, Study
+from ulna import Arm, Joint, Probe, Study
 from ulna.calibration.calibrate import calibrate
 from ulna.calibration.result import Result
 from ulna.exchange.export.dh import dh_table
@@ -74,7 +74,9 @@ def test_two_commands_and_a_workbook(tmp_path: Path, kept: Kept) -> None:
     """German titles and headings, merged cells, comments, counts; nothing is known of zeros, signs or links. The five
     bad touches are named by their cells, and nothing else is."""
     workbook(kept, tmp_path / "book.xlsx")
-    arm, shown, report = commands(tmp_path, "book.xlsx", *BAR, "--reach", "1000", "--counts-per-turn", str(COUNTS))
+    arm, shown, report = commands(
+        tmp_path, "book.xlsx", *BAR, "--reach", "1000", "--parallel", "none", "--counts-per-turn", str(COUNTS)
+    )
     assert_right(arm, kept)
     assert re.search(r"Bemerkung +not used", shown)
     assert re.search(r"Ende +feature .*'links' is A, 'rechts' is B", shown)
@@ -88,7 +90,7 @@ def test_chinese_headings_blank_cells_and_other_arms(tmp_path: Path, seed: int) 
     """Where cells are blank and not merged, what stands above counts."""
     other = measured(tmp_path / "made", seed=seed)
     workbook(other, tmp_path / "book.xlsx", CHINESE, merged=False)
-    result, proposal = found(tmp_path, "book.xlsx", reach=900.0, counts_per_turn=(float(COUNTS),))
+    result, proposal = found(tmp_path, "book.xlsx", reach=900.0, parallel=("none",), counts_per_turn=(float(COUNTS),))
     assert_right(result.arm, other)
     assert proposal.entry["fill_down"] == ["placement"]
     assert {row["place"] for row in result.outliers} >= {f"'数据'!A{row + 4}" for row in MISSED}
@@ -106,7 +108,7 @@ def test_a_text_of_degrees(
     tmp_path: Path, kept: Kept, words: dict[str, Any], encoding: str, separator: str, decimal: str, unit: str
 ) -> None:
     text(kept, tmp_path / "out.csv", words, encoding, np.degrees(kept.q_rad), separator, decimal, unit)
-    result, proposal = found(tmp_path, "out.csv", reach=1400.0)
+    result, proposal = found(tmp_path, "out.csv", reach=1400.0, parallel=("none",))
     assert_right(result.arm, kept)
     assert proposal.angle == "deg"
     assert {row["row"] for row in result.outliers} >= set(MISSED)
@@ -134,3 +136,25 @@ def test_a_urdf(tmp_path: Path, kept: Kept) -> None:
     result, proposal = found(tmp_path, "out.csv", urdf=tmp_path / "arm.urdf", zeros="known", signs="known")
     assert_right(result.arm, kept)
     assert proposal.taken[1].why == "the joint's name in the drawing"
+
+
+def test_an_arm_whose_axes_are_parallel(tmp_path: Path) -> None:
+    """Built as robots are: shoulder and elbow turn about parallel axes. Said so, the arm is found; not said, no wrong
+    arm is called good."""
+    right = np.pi / 2
+    joints = [
+        Joint(0.3, right + 0.003, 20.0, 300.0),
+        Joint(-1.0, 0.02, 400.0, 0.0, sign=-1),
+        Joint(0.5, right, 10.0, 5.0),
+        Joint(2.0, -right, 0.0, 380.0),
+        Joint(1.0, right, 0.0, 3.0, sign=-1),
+    ]
+    robot = Arm("robot", (*joints, Joint()), {"tip": Probe(30.0, 10.0, 150.0)})
+    other = measured(tmp_path / "made", 3, robot)
+    workbook(other, tmp_path / "book.xlsx")
+    said = {"reach": 1100.0, "counts_per_turn": (float(COUNTS),)}
+    result, _ = found(tmp_path, "book.xlsx", parallel=("2",), **said)
+    assert_right(result.arm, other)
+    workbook(other, tmp_path / "made" / "book.xlsx")
+    with pytest.raises(AssertionError, match="converged"):
+        found(tmp_path / "made", "book.xlsx", parallel=("none",), **said)

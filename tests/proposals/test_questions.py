@@ -29,7 +29,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Kept:
 def complete(tmp_path: Path, kept: Kept) -> Answers:
     """All that is needed beside a text in rad."""
     text(kept, tmp_path / "out.csv", GERMAN, "utf-8", kept.q_rad, ",", ".")
-    return Answers(readings=tmp_path / "out.csv", artefact="bar", length=LENGTH_MM, reach=1000.0)
+    return Answers(readings=tmp_path / "out.csv", artefact="bar", length=LENGTH_MM, reach=1000.0, parallel=("none",))
 
 
 def refused(answers: Answers, *fragments: str) -> str:
@@ -69,7 +69,13 @@ def test_all_that_a_workbook_does_not_say_is_one_message(tmp_path: Path, kept: K
 def test_answers_one_by_one_lead_to_the_proposal(tmp_path: Path, kept: Kept) -> None:
     """As on a terminal: the first question is answered until none is left."""
     workbook(kept, tmp_path / "book.xlsx")
-    said = {"artefact": "bar", "length": "443,172", "drawing": "reach 1000", "counts_per_turn": "65536"}
+    said = {
+        "artefact": "bar",
+        "length": "443,172",
+        "drawing": "reach 1000",
+        "parallel": "none",
+        "counts_per_turn": "65536",
+    }
     answers, order = Answers(readings=tmp_path / "book.xlsx"), []
     found: Proposal | None = None
     while found is None:
@@ -79,7 +85,7 @@ def test_answers_one_by_one_lead_to_the_proposal(tmp_path: Path, kept: Kept) -> 
             question = error.questions[0]
             order.append(question.field)
             answers = question.answered(answers, said.pop(question.field))
-    assert order == ["artefact", "length", "drawing", "counts_per_turn"]
+    assert order == ["artefact", "length", "drawing", "parallel", "counts_per_turn"]
     assert found.stated.keys == {"kind": "bar", "length": LENGTH_MM}
     assert found.arm.joints[3].counts_per_turn == 65536
     assert found.arm.unknown_signs.all()
@@ -87,7 +93,7 @@ def test_answers_one_by_one_lead_to_the_proposal(tmp_path: Path, kept: Kept) -> 
 
 @pytest.mark.parametrize(
     ("field", "typed"),
-    [("length", "long"), ("length", "-3"), ("artefact", "stick"), ("drawing", "1200"), ("zeros", "maybe")],
+    [("length", "long"), ("length", "-3"), ("artefact", "stick"), ("drawing", "long"), ("zeros", "maybe")],
 )
 def test_an_answer_that_is_none(field: str, typed: str) -> None:
     from ulna.proposals.answers import Question
@@ -117,6 +123,7 @@ def test_a_drawing_is_asked_for_zeros_and_signs(tmp_path: Path, complete: Answer
         ({"angle": "grad"}, ("--angle: got 'grad'", "rad or deg or counts")),
         ({"length": -1.0}, ("--length: got -1",)),
         ({"urdf": "a.urdf"}, ("--reach and --urdf", "said twice")),
+        ({"parallel": ("6",)}, ("--parallel: got 6", "1 to 5")),
         ({"columns": ("q1=Achse 9",)}, ("'Achse 9'", "--column")),
         ({"columns": ("placement",)}, ("--column: got 'placement'",)),
         ({"names": ("links",)}, ("--name: got 'links'",)),
@@ -223,6 +230,6 @@ def test_nothing_half_written_and_nothing_overwritten(tmp_path: Path, complete: 
 
 def test_the_command_without_a_terminal_asks_in_one_message(tmp_path: Path, complete: Answers) -> None:
     done = run("new", "--readings", complete.readings, "-o", tmp_path / "study")
-    assert_bad_input(done, "--artefact KIND", "--reach MM", "--dh TABLE")
+    assert_bad_input(done, "--artefact bar, seat", "--reach MM", "--dh TABLE")
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "study").exists()

@@ -46,6 +46,12 @@ def new(
         float | None,
         typer.Option(metavar="MM", help="From base to tip, where there is no drawing.", rich_help_panel=_ARM),
     ] = None,
+    parallel: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="N", help="With --reach: an axis parallel to the next; repeat it, or none.", rich_help_panel=_ARM
+        ),
+    ] = None,
     dh: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Table of DH parameters, as import dh reads it.", rich_help_panel=_ARM),
@@ -127,7 +133,7 @@ def new(
     elsewhere in one message that names the options. Zeros and signs of encoders that nobody knows are searched for, and
     an arm without a drawing is found from its reach. The readings stay where they are; nothing is overwritten.
 
-    Example: [bold]ulna new --readings Messung.xlsx --artefact bar --length 443.172 --reach 1200 -o study[/bold]
+    Example: [bold]ulna new --readings Messung.xlsx --artefact bar --length 443.172 --reach 1200 --parallel none[/bold]
     """
     from ulna.calibration.identify import identify
     from ulna.cli import output
@@ -151,6 +157,7 @@ def new(
         one_standing=one_standing,
         skip_bad=skip_bad,
         reach=reach,
+        parallel=tuple(parallel or ()),
         dh=dh,
         convention=convention,
         length_unit=length_unit,

@@ -112,8 +112,8 @@ def unit_of(path: Path, angles: Angles, answers: Answers) -> tuple[str, str] | Q
 def _by_range(angles: Angles) -> tuple[str, str] | Question:
     values = [column.numbers.drop_nulls().drop_nans().to_numpy() for column in angles.columns]
     # one cell in a hundred may be anything
-    low = [float(np.quantile(each, 0.01)) for each in values]
-    high = [float(np.quantile(each, 0.99)) for each in values]
+    low = [float(np.quantile(each, 0.01, method="nearest")) for each in values]
+    high = [float(np.quantile(each, 0.99, method="nearest")) for each in values]
     most, span = max(map(abs, [*low, *high])), max(h - lo for lo, h in zip(low, high, strict=True))
     whole = all(bool((each == np.round(each)).all()) for each in values)
     seen = f"they go from {min(low):.6g} to {max(high):.6g}" + (", all whole numbers" if whole else "")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.errors import UlnaInputError
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,8 @@ class Answers:
     skip_bad: bool = False
     reach: float | None = None
     """From the base to the tip of the stretched arm."""
+    parallel: tuple[str, ...] = ()
+    """With a reach: axes that are parallel to the next one, by their numbers; or "none"."""
     dh: Path | None = None
     convention: str | None = None
     length_unit: str | None = None
@@ -91,6 +93,10 @@ def _number(text: str, question: Question) -> float:
     return value
 
 
+def _is_number(text: str) -> bool:
+    return text.replace(",", "").replace(".", "").isdecimal()
+
+
 def _numbers(text: str, question: Question) -> tuple[float, ...]:
     return tuple(_number(each, question) for each in text.split())
 
@@ -101,9 +107,8 @@ def _path(text: str, question: Question) -> Path:
 
 def _word(text: str, question: Question) -> str:
     if question.choices and text not in question.choices:
-        raise UlnaInputError(
-            f"{question.flag}: got '{text}', expected {' or '.join(question.choices)}.{nearest(text, question.choices)}"
-        )
+        known = " or ".join(filter(None, [", ".join(question.choices[:-1]), question.choices[-1]]))
+        raise UlnaInputError(f"{question.flag.split()[0]}: got '{text}', expected {known}.")
     return text
 
 
@@ -130,7 +135,7 @@ def answer(answers: Answers, question: Question, text: str) -> Answers:
     """With what somebody typed. Raises UlnaInputError for what is no answer."""
     text, field = text.strip(), question.field
     if field == "drawing":
-        word, _, rest = text.partition(" ")
+        word, _, rest = f"reach {text}".partition(" ") if _is_number(text) else text.lstrip("-").partition(" ")
         if word not in DRAWN or not rest.strip():
             raise UlnaInputError(
                 f"got '{text}', expected such as reach 1200, dh arm.csv, urdf arm.urdf or arm arm.toml."
@@ -140,13 +145,12 @@ def answer(answers: Answers, question: Question, text: str) -> Answers:
         if text == "one":
             return replace(answers, one_standing=True)
         field, text = "columns", f"placement={text}"
+    if field == "parallel":
+        return replace(answers, parallel=tuple(text.replace(",", " ").split()))
     if field == "skip_bad":
         return replace(answers, skip_bad=_word(text, question) == "yes")
-    if field in _SEVERAL:
-        value: Any = (*getattr(answers, field), text)
-    else:
-        value = _READ.get(field, _word)(text, question)
-    changed: dict[str, Any] = {field: value}
+    read = (*getattr(answers, field), text) if field in _SEVERAL else _READ.get(field, _word)(text, question)
+    changed: dict[str, Any] = {field: read}
     return replace(answers, **changed)
 
 
@@ -161,7 +165,7 @@ def check(answers: Answers) -> None:
         ("--angle-unit", answers.angle_unit, ("rad", "deg")),
     ):
         if value is not None and value not in known:
-            raise UlnaInputError(f"{option}: got '{value}', expected {' or '.join(known)}.{nearest(value, known)}")
+            raise UlnaInputError(f"{option}: got '{value}', expected {' or '.join(known)}. Correct it.")
     given = [f"--{name}" for name in DRAWN if getattr(answers, name) is not None]
     if len(given) > 1:
         raise UlnaInputError(

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.arm.arm import Arm
+from ulna.arm.frames.links import hayati_where_parallel
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.exchange.importers.dh import arm_from_table
@@ -19,11 +20,11 @@ from ulna.exchange.urdf.units import in_units
 from ulna.ground.errors import UlnaInputError
 from ulna.proposals.answers import Answers, Question
 
-#: of the reach: upper arm, forearm, and from the wrist to the tip
-SHARES = (0.4, 0.4, 0.2)
+HAND = 0.2
+"""Of the reach: from the wrist to the tip; the links before it share the rest."""
 ASIDE = 0.02
 """Of the reach: how far the tip stands off the last axis, since a tip on it could not show where it points."""
-LEAST_AXES = 5
+LEAST_AXES = 4
 
 
 @dataclass(frozen=True)
@@ -84,23 +85,48 @@ DRAWING = Question(
 )
 
 
-def by_reach(axes: int, reach_mm: float, name: str) -> Drawn:
-    """An arm as most are built: axes by turns along and across the links, neighbours at right angles, upper arm,
-    forearm and hand in their usual shares. With zeros and signs searched for, a fit finds what it really is.
+PARALLEL = Question(
+    "parallel",
+    "--parallel N, once for each, or --parallel none",
+    "which axes, counted from the base, are parallel to the next one, or none (all stand across their neighbours)",
+)
 
-    Raises UlnaInputError for too few axes.
+
+def by_reach(axes: int, reach_mm: float, parallel: Sequence[str], name: str) -> Drawn:
+    """An arm as most are built. parallel: axes that are parallel to the next, by number, or "none"; all others are at
+    right angles to it. Links go along every second axis of those, and from axis to axis where two are parallel, and are
+    of one length. With zeros and signs searched for, a fit finds what the arm really is.
+
+    Raises UlnaInputError for too few axes, and numbers that are none.
     """
     if axes < LEAST_AXES:
         raise UlnaInputError(
             f"--reach: an arm of {axes} axes is not drawn from its reach alone; expected at least {LEAST_AXES} axes, "
             "or a drawing. Give --dh, --urdf or --arm."
         )
-    lengths = [0.0] * (axes - 1)
-    lengths[2], lengths[-1 if axes < 6 else 4] = SHARES[0] * reach_mm, SHARES[1] * reach_mm
-    joints = [Joint(0.0, math.pi / 2 * (-1 if k % 2 == 0 else 1), 0.0, length) for k, length in enumerate(lengths)]
-    arm = Arm(name, (*joints, Joint()), {"tip": Probe(ASIDE * reach_mm, 0.0, SHARES[2] * reach_mm)})
-    said = f"nobody drew it: {axes} axes at right angles to their neighbours, {reach_mm:g} mm from base to tip"
-    return Drawn(arm, said, guessed=True)
+    if list(parallel) != ["none"] and not all(each.isdecimal() and 1 <= int(each) < axes for each in parallel):
+        raise UlnaInputError(
+            f"--parallel: got {' '.join(parallel)}; expected none, or numbers from 1 to {axes - 1} of axes that are "
+            "parallel to the next one. Correct it."
+        )
+    to_next = [str(k) in parallel for k in range(1, axes)]
+    along = [True]  # whether the arm's links go along the axis
+    for same in to_next[:-1]:
+        along.append(along[-1] if same else not along[-1])
+    long = [same or (own and k > 0) for k, (same, own) in enumerate(zip(to_next, along, strict=True))]
+    link_mm = (1.0 - HAND) * reach_mm / max(1, sum(long))
+    side = -1.0
+    joints = []
+    for same, has in zip(to_next, long, strict=True):
+        alpha_rad = 0.0 if same else side * math.pi / 2
+        side = side if same else -side
+        joints.append(Joint(0.0, alpha_rad, link_mm if same else 0.0, link_mm if has and not same else 0.0))
+    tip = Probe(ASIDE * reach_mm, 0.0, HAND * reach_mm)
+    made, probes, _ = hayati_where_parallel((*joints, Joint()), {"tip": tip})
+    twos = ", ".join(f"{k} and {k + 1}" for k in range(1, axes) if to_next[k - 1])
+    how = f"axes {twos} parallel, the others across their neighbours" if twos else "each axis across its neighbours"
+    said = f"nobody drew it: {how}, {reach_mm:g} mm from base to tip"
+    return Drawn(Arm(name, tuple(made), probes), said, guessed=True)
 
 
 def encoder_questions(drawn: Drawn, answers: Answers) -> list[Question]:

@@ -17,7 +17,7 @@ from ulna.formats.table import read_header
 from ulna.ground.errors import UlnaInputError
 from ulna.proposals.angles import Angles, angles_of, counts_question, unit_of
 from ulna.proposals.answers import Answers, Question, UnansweredError, check
-from ulna.proposals.arms import DRAWING, Drawn, as_asked, by_reach, drawn_arm, encoder_questions
+from ulna.proposals.arms import DRAWING, PARALLEL, Drawn, as_asked, by_reach, drawn_arm, encoder_questions
 from ulna.proposals.columns import Column, Taken, columns_of, named
 from ulna.proposals.dialect import seen_dialect
 from ulna.proposals.labels import Labels, feature_labels, matched_labels, other_labels, standing_labels
@@ -83,8 +83,10 @@ def propose(answers: Answers) -> Proposal:
     if drawn is None and not isinstance(found, list):
         if answers.reach is None:
             questions.append(DRAWING)
+        elif not answers.parallel:
+            questions.append(PARALLEL)
         else:
-            drawn = by_reach(angles.count, answers.reach, path.stem)
+            drawn = by_reach(angles.count, answers.reach, answers.parallel, path.stem)
     if drawn is not None:
         _check_axes(path, drawn, angles)
         questions += encoder_questions(drawn, answers)

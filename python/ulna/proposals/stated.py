@@ -43,8 +43,8 @@ class Stated:
 
 def kind_question() -> Question:
     """Which artefact was touched."""
-    words = ", ".join(KINDS)
-    return Question("artefact", "--artefact KIND", f"what was touched: {words}", tuple(KINDS))
+    *most, last = KINDS
+    return Question("artefact", f"--artefact {', '.join(most)} or {last}", "what was touched", tuple(KINDS))
 
 
 def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated | list[Question]:

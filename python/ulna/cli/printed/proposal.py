@@ -8,19 +8,16 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ulna.cli.printed.tables import heading
+from ulna.ground.terminal import plain_table
 from ulna.proposals.propose import Proposal
 
 
 def proposal_report(proposal: Proposal) -> Iterator[RenderableType]:
     """The parts, in order."""
-    yield heading(f"{proposal.readings.name}: {proposal.rows} rows")
     yield from (Text(remark) for remark in proposal.remarks)
-    grid = Table.grid(padding=(0, 2, 0, 0))
-    grid.add_column(overflow="fold")
-    grid.add_column(overflow="fold")
-    grid.add_column(overflow="fold")
-    grid.add_row(Text("column"), Text("taken for"), Text("because"), style="underline")
+    grid = plain_table(f"{proposal.readings.name}: {proposal.rows} rows")
+    for head in ("column", "taken for", "because"):
+        grid.add_column(head, overflow="fold")
     for taken in proposal.taken:
         grid.add_row(Text(taken.column), Text(taken.ours or "not used"), Text(taken.why))
     yield grid
