@@ -150,14 +150,23 @@ def text(
     separator: str,
     decimal: str,
     unit: str = "",
+    titles: bool = False,
 ) -> None:
     """The same as a text, as a spreadsheet program exports it."""
     stream = io.StringIO()
     writer = csv.writer(stream, delimiter=separator)
+    for line in words["title"] if titles else ():  # type: ignore[attr-defined]
+        writer.writerow([line])
     writer.writerow(headings(words, unit))
     for row in kept.rows(words, values):
         writer.writerow([repr(cell).replace(".", decimal) if isinstance(cell, float) else cell for cell in row])
     path.write_bytes(stream.getvalue().encode(encoding))
+
+
+def example(path: Path, folder: Path) -> None:
+    """examples/home-built/messung.csv: degrees with four decimals, as a German spreadsheet program writes them."""
+    kept = measured(folder, seed=1)
+    text(kept, path, GERMAN, "cp1252", np.round(np.degrees(kept.q_rad), 4), ";", ",", " [°]", titles=True)
 
 
 def length_errors_mm(found: Arm, truth: Arm, q_rad: F64) -> F64:

@@ -17,6 +17,7 @@ from tests.home_built import (
     LENGTH_MM,
     MISSED,
     Kept,
+    example,
     length_errors_mm,
     measured,
     text,
@@ -68,6 +69,11 @@ def assert_right(found: Arm, kept: Kept) -> None:
     """Lengths that the arm measures are those of the true arm."""
     good = np.delete(kept.q_rad, np.array(MISSED) - 1, axis=0)
     assert abs(length_errors_mm(found, kept.truth, good)).max() < MOST_MM
+
+
+def test_the_example_is_what_its_generator_makes(tmp_path: Path, root: Path) -> None:
+    example(tmp_path / "messung.csv", tmp_path / "made")
+    assert (root / "examples" / "home-built" / "messung.csv").read_bytes() == (tmp_path / "messung.csv").read_bytes()
 
 
 def test_two_commands_and_a_workbook(tmp_path: Path, kept: Kept) -> None:
