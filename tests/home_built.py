@@ -166,7 +166,7 @@ def text(
 def example(path: Path, folder: Path) -> None:
     """examples/home-built/messung.csv: degrees with four decimals, as a German spreadsheet program writes them."""
     kept = measured(folder, seed=1)
-    text(kept, path, GERMAN, "cp1252", np.round(np.degrees(kept.q_rad), 4), ";", ",", " [°]", titles=True)
+    text(kept, path, GERMAN, "utf-8-sig", np.round(np.degrees(kept.q_rad), 4), ";", ",", " [°]", titles=True)
 
 
 def length_errors_mm(found: Arm, truth: Arm, q_rad: F64) -> F64:

@@ -59,7 +59,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
         ],
         19,
     ),
-    "new-calibrate.txt": (["calibrate", "out/home-built/study.toml"], 7),
+    "new-calibrate.txt": (["calibrate", "out/home-built/study.toml"], 4),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the

@@ -24,7 +24,7 @@ ROLES = (
 """What a column may be for; each language says words for each."""
 
 ANGLE_UNITS = {
-    **dict.fromkeys(("rad", "radian", "radians", "弧度", "bogenmaß", "radiant"), "rad"),
+    **dict.fromkeys(("rad", "radian", "radians", "弧度", "bogenmass", "radiant"), "rad"),
     **dict.fromkeys(("deg", "°", "degree", "degrees", "grad", "度", "degré", "degrés", "grados", "gradi"), "deg"),
     **dict.fromkeys(
         (

@@ -42,6 +42,10 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts += directions(result.identifiability)
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
 
+#: sets of joints that may all count the other way, of which each is said
+_MOST_SETS = 3
+
+
 
 def ending(fit: FitSummary) -> str:
     """How the fit ended, and how it got there."""
@@ -58,6 +62,12 @@ def ending(fit: FitSummary) -> str:
         text += f" Searched {fit.searched_starts} starts, {reason}."
     if fit.folded:
         text += f" Folded to the twin nearest the given arm: {', '.join(fit.folded)}."
+    if len(fit.undecided_signs) > _MOST_SETS:
+        every = sorted({joint for joints in fit.undecided_signs for joint in joints})
+        return text + (
+            f" Which way the encoders of joints {_and(every)} count, these readings do not tell: "
+            f"{len(fit.undecided_signs)} other choices fit as well, each with its own twists; lengths are the same."
+        )
     for joints in fit.undecided_signs:
         text += (
             f" Which way the encoder{'s' * (len(joints) > 1)} of joint{'s' * (len(joints) > 1)} {_and(joints)} "
