@@ -57,7 +57,7 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
             *("new", "--readings", "examples/home-built/messung.csv", "--artefact", "bar", "--length", "443.172"),
             *("--reach", "1000", "--parallel", "none", "-o", "out/home-built"),
         ],
-        19,
+        23,
     ),
     "new-calibrate.txt": (["calibrate", "out/home-built/study.toml"], 4),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),

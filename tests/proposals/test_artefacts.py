@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 import pytest
 from tests.home_built import true_arm
-from tests.proposals.test_questions import asked
+from tests.proposals.test_questions import asked, refused
 
 from ulna import Study
 from ulna.artefacts.kinds import KINDS
@@ -138,3 +138,25 @@ def test_a_ball_that_matters_is_asked_about(tmp_path: Path) -> None:
     )
     assert asked(said) == ["ball"]
     assert propose(replace(said, ball=6.0)).arm.probes["tip"].ball_mm == 6.0
+
+
+def test_an_artefact_without_a_length_and_an_arm_that_nobody_drew(tmp_path: Path) -> None:
+    """The scale of the arm would be a guess; two probes, and columns that are nearly known, do no harm."""
+    rows = "".join(f"{k}.5,1.5,0.5,2.5,1.25,{k % 3}.75,cone,,{('long', 'short')[k % 2]}\n" for k in range(40))
+    (tmp_path / "table.csv").write_text(f"A1,A2,A3,A4,A5,A6,Feature,Temperature,Probe\n{rows}")
+    said = Answers(
+        readings=tmp_path / "table.csv",
+        artefact="seat",
+        reach=900.0,
+        parallel=("none",),
+        angle="deg",
+        one_standing=True,
+    )
+    refused(said, "--reach", "'seat' has no length", "would be a guess")
+    true_arm(3).save(tmp_path / "true.toml")
+    found = propose(replace(said, reach=None, arm=tmp_path / "true.toml", zeros="known", signs="known"))
+    assert list(found.arm.probes) == ["long", "short"]
+    assert found.entry["ignore"] == ["Feature", "Temperature"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        write_proposal(found, tmp_path / "study")

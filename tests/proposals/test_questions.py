@@ -233,3 +233,12 @@ def test_the_command_without_a_terminal_asks_in_one_message(tmp_path: Path, comp
     assert_bad_input(done, "--artefact bar, seat", "--reach MM", "--dh TABLE")
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "study").exists()
+
+
+def test_several_artefacts_in_one_table(complete: Answers) -> None:
+    path = complete.readings
+    assert path is not None
+    edited(path, ("Bemerkung", "Normal"), ("neu aufgelegt", "Stab 1"))
+    assert propose(complete).rows == 179
+    path.write_text(path.read_text(encoding="utf-8").replace("Stab 1", "Stab 2", 1), encoding="utf-8")
+    refused(complete, "column 'Normal' names several artefacts", "'Stab 2', 'Stab 1'")

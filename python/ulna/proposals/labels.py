@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
+from ulna.ground.errors import UlnaInputError
 from ulna.proposals.answers import Question
 from ulna.proposals.columns import Column, Taken, named
 
 _SHOWN = 6
+SAID, OWN = "said with --column", "Ulna's own name"
 
 
 @dataclass
@@ -38,10 +41,10 @@ class Labels:
 def _of_role(columns: Sequence[Column], role: str, ours: str, mapped: Mapping[str, str]) -> tuple[Column, str] | None:
     """The column that is meant, and why: said, of Ulna's own name, or by a word."""
     if ours in mapped and (said := named(columns, mapped[ours])) is not None:
-        return said, "said with --column"
+        return said, SAID
     own = named(columns, ours)
     if own is not None:
-        return own, "Ulna's own name"
+        return own, OWN
     worded = [column for column in columns if column.meaning.role == role]
     exact = sorted(worded, key=lambda column: (column.filled == 0, len(column.name)))
     return (exact[0], f"'{exact[0].meaning.word}'") if exact else None
@@ -108,10 +111,13 @@ def standing_labels(
 ) -> None:
     """The column that says where the artefact stood: cells of one standing are alike. touched: the column of features;
     needed: whether the artefact stands somewhere unknown; one: whether it was said that it never moved."""
+    own = named(columns, "placement")
+    if own is not None and not needed and not one:
+        found.take(own, "placement", OWN, filled=True)
     if not needed or (one and "placement" not in mapped):
         return
     meant = _of_role(columns, "standing", "placement", mapped)
-    if meant is not None and (meant[1] == "said with --column" or _groups(meant[0], touched)):
+    if meant is not None and (meant[1] in (SAID, OWN) or _groups(meant[0], touched)):
         found.take(meant[0], "placement", f"{meant[1]}: {len(meant[0].labels)} standings", filled=True)
         return
     for column in columns:
@@ -143,8 +149,11 @@ def _groups(column: Column, touched: Column | None) -> bool:
     return 2 * sum(len(labels) > 1 for labels in several.values()) > groups
 
 
-def other_labels(columns: Sequence[Column], measured: str | None, mapped: Mapping[str, str], found: Labels) -> None:
-    """Probes, temperature, a measured distance, ids; the rest is not used, and said."""
+def other_labels(
+    path: Path, columns: Sequence[Column], measured: str | None, mapped: Mapping[str, str], found: Labels
+) -> None:
+    """Probes, temperature, a measured distance, ids; the rest is not used, and said. Raises UlnaInputError for a column
+    that names several artefacts."""
     used = {taken.column for taken in found.taken}
     for role, ours, wanted in (("probe", "probe", True), ("measured", measured or "", measured is not None)):
         meant = _of_role([c for c in columns if c.name not in used], role, ours, mapped) if wanted else None
@@ -159,6 +168,11 @@ def other_labels(columns: Sequence[Column], measured: str | None, mapped: Mappin
         if column.name in used:
             continue
         heading = column.meaning
+        if heading.role == "artefact" and not column.numeric and len(column.labels) > 1:
+            raise UlnaInputError(
+                f"{path}: column '{column.name}' names several artefacts ({_listed(column.labels)}); expected one, of "
+                "which ulna new writes a study. Give a file for each, or write the study's other artefacts by hand."
+            )
         if heading.role == "temperature" and column.numeric and not column.bad and not found.has("temperature"):
             found.take(column, "temperature", f"'{heading.word}'")
         elif heading.role == "measurement" and column.texts.n_unique() == len(column.texts) and not found.has("id"):
@@ -172,6 +186,8 @@ def _unused(column: Column) -> str:
         return "what was wanted, not what was read"
     if column.meaning.role == "aside":
         return f"'{column.meaning.word}', {column.filled} cells"
+    if column.meaning.role == "temperature":
+        return f"'{column.meaning.word}', but {len(column.bad)} cells hold no number"
     return f"nothing that a study needs: {_listed(column.labels)}" if column.filled else "all its cells are empty"
 
 

@@ -86,6 +86,7 @@ def propose(answers: Answers) -> Proposal:
         elif not answers.parallel:
             questions.append(PARALLEL)
         else:
+            _check_scale(what, answers)
             drawn = by_reach(angles.count, answers.reach, answers.parallel, path.stem)
     if drawn is not None:
         _check_axes(path, drawn, angles)
@@ -97,7 +98,7 @@ def propose(answers: Answers) -> Proposal:
         questions.append(counts_question(angles))
     if isinstance(what, list):
         raise UnansweredError(str(path), questions)
-    labels = _labels(answers, columns, angles, what, layout)
+    labels = _labels(path, answers, columns, angles, what, layout)
     questions += labels.questions
     bad = _bad_cells(header, angles, answers)
     questions += [bad] if isinstance(bad, Question) else []
@@ -134,11 +135,27 @@ def _check_axes(path: Path, drawn: Drawn, angles: Angles) -> None:
         )
 
 
+def _check_scale(what: Stated | list[Question], answers: Answers) -> None:
+    """An arm that nobody drew has its lengths from the artefact, which must have some. Raises UlnaInputError."""
+    if isinstance(what, list):
+        return
+    artefact, kind = what.artefact, kind_of(what.artefact)
+    has_length = kind.dimensions(artefact) or len(artefact.features) > 1 or kind.measured_column is not None
+    if not has_length and "features" not in kind.table.model_fields:
+        raise UlnaInputError(
+            f"--reach: an artefact of kind '{kind.name}' has no length, so that every length of the arm would be a "
+            f"guess from its reach of {answers.reach:g} mm; expected a drawing of the arm, or an artefact of known "
+            "length. Give --dh, --urdf or --arm, or touch a bar as well."
+        )
+
+
 def _counts_known(drawn: Drawn | None) -> bool:
     return drawn is not None and all(joint.counts_per_turn is not None for joint in drawn.arm.joints)
 
 
-def _labels(answers: Answers, columns: Sequence[Column], angles: Angles, what: Stated, layout: Layout) -> Labels:
+def _labels(
+    path: Path, answers: Answers, columns: Sequence[Column], angles: Angles, what: Stated, layout: Layout
+) -> Labels:
     found = Labels()
     used = {column.name for column in angles.columns}
     rest = [column for column in columns if column.name not in used]
@@ -163,7 +180,7 @@ def _labels(answers: Answers, columns: Sequence[Column], angles: Angles, what: S
         if re.fullmatch(r"[xyzu]|p\d+", column.name) and column.numeric and (not features or kind.poses == 2):
             found.take(column, column.name, "Ulna's own name")
             rest.remove(column)
-    other_labels(rest, None if artefact.length_mm is not None else kind.measured_column, layout.columns, found)
+    other_labels(path, rest, None if artefact.length_mm is not None else kind.measured_column, layout.columns, found)
     return found
 
 
@@ -251,6 +268,9 @@ def _entry(
         entry["names"] = {column: {ours: _plain(own) for ours, own in each.items()} for column, each in names.items()}
     if labels.fill_down:
         entry["fill_down"] = labels.fill_down
+    unused = [each.column for each in taken if not each.ours]
+    if unused:
+        entry["ignore"] = unused
     if where:
         entry["where"] = where
     return entry

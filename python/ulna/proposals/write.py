@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 
 from ulna.arm.file import arm_toml
+from ulna.artefacts.kinds import KINDS
 from ulna.formats.output import output_folder, refuse_inputs
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.errors import UlnaInputError
@@ -64,13 +65,11 @@ def study_text(proposal: Proposal, folder: Path) -> str:
         f"file = {toml_value(_relative(proposal.readings, folder))}",
         *(_line(key, value, proposal) for key, value in proposal.entry.items()),
     ]
-    unused = [each for each in proposal.taken if not each.ours]
-    lines += [_comment(f"not used: column '{each.column}' ({each.why})") for each in unused]
     lines += ["", f"[artefact.{toml_key(stated.artefact.name)}]"]
     for key, value in stated.keys.items():
         text = toml_value(_relative(Path(value), folder)) if key == "features" else toml_value(value)
         lines.append(f"{toml_key(key)} = {text}")
-    if "u" not in stated.keys:
+    if "u" in KINDS[stated.artefact.kind].table.model_fields and "u" not in stated.keys:
         lines.append(_comment("u = 0.001    (the standard uncertainty of its certificate, where you have it)"))
     lines += ["", "[fit]"]
     if proposal.search:
