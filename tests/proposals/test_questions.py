@@ -13,6 +13,7 @@ from tests.cli_runs import assert_bad_input, run
 from tests.home_built import GERMAN, LENGTH_MM, Kept, measured, text, workbook
 from tests.small_study import says
 
+from ulna.cli.new import _proposed
 from ulna.ground.errors import UlnaInputError
 from ulna.proposals.answers import Answers, UnansweredError
 from ulna.proposals.propose import Proposal, propose
@@ -242,3 +243,23 @@ def test_several_artefacts_in_one_table(complete: Answers) -> None:
     assert propose(complete).rows == 179
     path.write_text(path.read_text(encoding="utf-8").replace("Stab 1", "Stab 2", 1), encoding="utf-8")
     refused(complete, "column 'Normal' names several artefacts", "'Stab 2', 'Stab 1'")
+
+
+def test_on_a_terminal_it_asks_until_nothing_is_left(
+    complete: Answers, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A wrong answer is told, and asked for again."""
+    typed = ["stick", "bar", "long", str(LENGTH_MM), "reach 1000", "none"]
+    shown: list[str] = []
+
+    def prompt(text: str, **_: Any) -> str:
+        shown.append(text)
+        return typed.pop(0)
+
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", prompt)
+    found = _proposed(Answers(readings=complete.readings))
+    assert typed == []
+    assert found.stated.keys == {"kind": "bar", "length": LENGTH_MM}
+    assert "got 'stick'" in capsys.readouterr().err
+    assert shown[0].startswith("What was touched? [bar/")
