@@ -249,7 +249,7 @@ def test_on_a_terminal_it_asks_until_nothing_is_left(
     complete: Answers, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A wrong answer is told, and asked for again."""
-    typed = ["stick", "bar", "long", str(LENGTH_MM), "reach 1000", "none"]
+    typed = ["stick", "bar", "long", str(LENGTH_MM), "reach 1000", "9", "none"]
     shown: list[str] = []
 
     def prompt(text: str, **_: Any) -> str:
@@ -261,5 +261,7 @@ def test_on_a_terminal_it_asks_until_nothing_is_left(
     found = _proposed(Answers(readings=complete.readings))
     assert typed == []
     assert found.stated.keys == {"kind": "bar", "length": LENGTH_MM}
-    assert "got 'stick'" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "got 'stick'" in told
+    assert "--parallel: got 9" in told
     assert shown[0].startswith("What was touched? [bar/")

@@ -200,12 +200,14 @@ def _proposed(answers: Answers) -> Proposal:
     from ulna.proposals.answers import UnansweredError
     from ulna.proposals.propose import propose
 
+    before: Answers | None = None
     while True:
         try:
             return propose(answers)
         except UnansweredError as asked:
             if not sys.stdin.isatty():
                 raise
+            before = answers
             question = asked.questions[0]
             choices = "/".join(question.choices) or question.flag
             asks = f"{question.asks[0].upper()}{question.asks[1:]}? [{choices}]\n"
@@ -214,3 +216,8 @@ def _proposed(answers: Answers) -> Proposal:
                 answers = question.answered(answers, text)
             except UlnaInputError as error:
                 print(error, file=sys.stderr)
+        except UlnaInputError as error:  # what was typed last does not fit: it is asked for again
+            if before is None or before == answers:
+                raise
+            print(error, file=sys.stderr)
+            answers = before
