@@ -52,6 +52,14 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
         None,
     ),
     "verify.txt": (["verify", "out/demo/result.json", "out/acceptance/plan.toml", "-o", "out/verified"], None),
+    "new.txt": (
+        [
+            *("new", "--readings", "examples/home-built/messung.csv", "--artefact", "bar", "--length", "443.172"),
+            *("--reach", "1000", "--parallel", "none", "-o", "out/home-built"),
+        ],
+        23,
+    ),
+    "new-calibrate.txt": (["calibrate", "out/home-built/study.toml"], 4),
     "reproduce.txt": (["reproduce", "cheng2011", "-o", "out/cheng2011"], None),
 }
 #: the ways of the literature: file below docs/output → study. They take minutes and print times, so the test that the

@@ -24,6 +24,7 @@ FLOORS = {
     "measuring": 6,
     "simulation": 6,
     "calibration": 6,
+    "proposals": 6,
     "verification": 7,
     "planning": 7,
     "reproduce": 7,

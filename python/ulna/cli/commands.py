@@ -13,6 +13,7 @@ from typer.main import get_command
 
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
+    "new": "ulna.cli.new",
     "calibrate": "ulna.cli.calibrate",
     "identify": "ulna.cli.identify",
     "evaluate": "ulna.cli.evaluate",

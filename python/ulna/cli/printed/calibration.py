@@ -43,6 +43,10 @@ def calibration_report(result: Result) -> list[RenderableType]:
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
 
 
+#: sets of joints that may all count the other way, of which each is said
+_MOST_SETS = 3
+
+
 def ending(fit: FitSummary) -> str:
     """How the fit ended, and how it got there."""
     text = f"{_ENDINGS.get(fit.termination, fit.termination)} ({fit.iterations} iterations)."
@@ -79,7 +83,10 @@ def _signs(fit: FitSummary) -> str:
 
 
 def _joints(sets: Sequence[Sequence[int]]) -> str:
-    """Which joints count, in words: "joints 1 and 3, or joint 7 count"."""
+    """Which joints count, in words: "joints 1 and 3, or joint 7 count"; of many sets, which joints are in any."""
+    if len(sets) > _MOST_SETS:
+        every = sorted({joint for joints in sets for joint in joints})
+        return f"some of joints {_and(every)} ({len(sets)} choices, each with its own twists) count"
     said = [f"joint{'s' * (len(joints) > 1)} {_and(joints)}" for joints in sets]
     return f"{', or '.join(said)} {'counts' if len(sets[-1]) == 1 else 'count'}"
 

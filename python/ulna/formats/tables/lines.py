@@ -196,6 +196,8 @@ def open_lines(path: Path, what: str, layout: Layout) -> LineTable:
 def _stripped(path: Path, text: str, what: str, remarks: list[str]) -> str:
     """Without what old programs write behind a text: Ctrl-Z, zeros to the end of a block."""
     bare = text.rstrip("\x00\x1a\r\n \t")
+    blanks = re.match(r"[ \t]*", text[len(bare) :])
+    bare += blanks[0] if blanks else ""  # tabs behind the last cell stand before empty ones
     if len(text) > len(bare) and any(sign in text[len(bare) :] for sign in "\x00\x1a"):
         remarks.append("the signs behind the last line (Ctrl-Z, zeros) are not read.")
     if "\x00" in bare:

@@ -115,6 +115,8 @@ class ReadingsEntry(TableKeys):
     approach: Literal["column", "order"] | None = None
     """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
     be said), or the order of the rows: the sign of each encoder's last change."""
+    ignore: Annotated[list[str], Field(min_length=1)] | None = None
+    """Columns that are not used, whatever they are called."""
     where: Annotated[dict[str, Condition], Field(min_length=1)] | None = None
     """Filter: column = what it must hold. A text, a number, a list of these, or `{ above, below, not, empty }`."""
     split: SplitTable | None = None
@@ -132,6 +134,26 @@ class Source:
     index: int
     """Into `Study.files`."""
     arm_file: Path
+
+
+def ignored_columns(header: Header, names: Collection[str], key: str) -> list[str]:
+    """The columns that are not to be used, as the table calls them. key: how messages call what names them. Raises
+    UlnaInputError for one that is not there, or that no study can do without."""
+    found = []
+    for name in names:
+        column = header.find(name)
+        if column is None:
+            there = [header.own(each) for each in header.columns]
+            raise UlnaInputError(
+                f"{key}: there is no column '{name}' in {header.path}.{nearest(name, there)} Correct it."
+            )
+        if re.fullmatch(r"[qp][0-9]+", column):
+            raise UlnaInputError(
+                f"{key}: {header.named(column)} of {header.path} is an angle of a joint; expected columns that the "
+                "study can do without. Take it out of the list."
+            )
+        found.append(column)
+    return found
 
 
 def codes(

@@ -28,6 +28,7 @@ from ulna.study.readings.columns import (
     check_columns,
     codes,
     each_row,
+    ignored_columns,
     is_numeric,
     known_columns,
     remark_unused,
@@ -77,7 +78,9 @@ def _table(
     by_order = entry.approach == "order"
     selection = Selection(entry.where or {}, entry.split, which, place)
     asked = list(dict.fromkeys(selection.columns(header).values()))
-    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, asked)
+    ignored = ignored_columns(header, entry.ignore or (), f"{place}.ignore'")
+    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, [*asked, *ignored])
+    needed = [column for column in needed if column not in ignored]
     if asked:
         texts = header.cells(lambda _: False, asked)
         chosen, rows = selection.of(texts, header, remarks), len(texts)

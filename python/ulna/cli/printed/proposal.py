@@ -1,0 +1,48 @@
+"""What `ulna new` prints: every column of the file with what it is taken for and why; how the rest was settled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from ulna.ground.terminal import plain_table
+from ulna.proposals.propose import Proposal
+
+
+def proposal_report(proposal: Proposal) -> Iterator[RenderableType]:
+    """The parts, in order."""
+    yield from (Text(remark) for remark in proposal.remarks)
+    grid = plain_table(f"{proposal.readings.name}: {proposal.rows} rows")
+    for head in ("column", "taken for", "because"):
+        grid.add_column(head, overflow="fold")
+    for taken in proposal.taken:
+        grid.add_row(Text(taken.column), Text(taken.ours or "not used"), Text(taken.why))
+    yield grid
+    yield Text("")
+    said = Table.grid(padding=(0, 2, 0, 0))
+    for what, how in _settled(proposal):
+        said.add_row(Text(what), Text(how))
+    yield said
+    yield Text("")
+
+
+def _settled(proposal: Proposal) -> Iterator[tuple[str, str]]:
+    arm = proposal.arm
+    yield "angles", f"{proposal.angle}: {proposal.angle_why}"
+    for key in ("separator", "decimal"):
+        if key in proposal.entry:
+            yield key, f"'{proposal.entry[key]}'"
+    yield "arm", f"{arm.n} axes, {proposal.drawn.said}"
+    if proposal.search or arm.unknown_signs.any():
+        unknown = ["zeros"] * proposal.search + ["signs"] * bool(arm.unknown_signs.any())
+        yield "encoders", f"{' and '.join(unknown)} are not known: the calibration searches for them"
+    dimensions = [
+        f"{key} = {value}" for key, value in proposal.stated.keys.items() if key not in ("kind", "features_format")
+    ]
+    yield "touched", ", ".join([str(proposal.stated.keys["kind"]), *dimensions]) + f" ({proposal.stated.length_unit})"
+    if "where" in proposal.entry:
+        yield "left out", "rows in which an axis has no number"
+    yield "far off", 'readings that do not fit count less (loss = "cauchy"), and calibrate names them'
