@@ -63,7 +63,7 @@ def test_an_arm_that_does_not_move_is_not_an_arm(seed: int, kind: str) -> None:
     rng = np.random.default_rng(seed)
     truth = table_4()
     make = {
-        "sphere": lambda: virtual.spheres(truth, rng, 8, 30, 30.0),
+        "sphere": lambda: virtual.spheres(truth, rng, 8, 30),
         "plane": lambda: virtual.planes(truth, rng, 8, 30),
         "cylinder": lambda: virtual.cylinders(truth, rng, 8, 30),
         "seat": lambda: virtual.seats(truth, rng, 8, 30),
