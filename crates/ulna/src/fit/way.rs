@@ -3,6 +3,7 @@
 use crate::arm::Unit;
 use crate::artefacts::Weighing;
 use crate::error::Result;
+use crate::fit::search::is_zero_offset;
 use crate::fit::settle::Settling;
 use crate::identify::families::pins;
 use crate::identify::identifiability::Known;
@@ -23,8 +24,10 @@ const PART: usize = 2_000;
 /// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test). It
 /// is let go as well where the readings tell its members apart better than a drawing does.
 const SIGNIFICANT: f64 = 4.0;
-/// A family is far behind where the readings see its directions to this part of a radian, or of the reach.
+/// A family is far behind where the readings see its directions to this part of a radian, or of the reach, and the arm
+/// has left its drawing by so many times what a drawing is known by.
 const FAR: f64 = 0.1;
+const OFF_DRAWING: f64 = 10.0;
 /// A fit on its way.
 pub(crate) struct Way<'a> {
     pub problem: &'a mut Problem,
@@ -148,7 +151,8 @@ impl<'a> Way<'a> {
             released = added(released, self.descend()?);
         }
         let let_go = pinned.0.len().saturating_sub(self.pins.len());
-        if let_go > 0 && self.left_behind(let_go, report.cost, released.cost)? {
+        let off_drawing = self.off_drawing(&pinned.1);
+        if let_go > 0 && self.left_behind(let_go, report.cost, released.cost, off_drawing)? {
             *report = added(*report, released);
         } else {
             (self.pins, self.x) = pinned;
@@ -158,21 +162,33 @@ impl<'a> Way<'a> {
 
     /// Whether the fit has left so many families behind: the cost fell, or the directions that the readings see least are
     /// seen well enough where it is.
-    fn left_behind(&mut self, let_go: usize, cost_pinned: f64, cost: f64) -> Result<bool> {
+    fn left_behind(&mut self, let_go: usize, cost_pinned: f64, cost: f64, off_drawing: bool) -> Result<bool> {
         let unknowns = self.problem.placement_unknowns() + self.free.len();
         let known = self.problem.equations() + self.problem.priors().len();
         let dof = known.saturating_sub(unknowns).max(1);
         let per_dof = cost / dof as f64;
         let variance = if self.problem.noise().is_some() { 1.0 } else { per_dof };
         Ok(cost_pinned - cost > SIGNIFICANT * let_go as f64 * variance
-            || self.tells_apart(let_go, per_dof.max(variance).sqrt())?)
+            || self.tells_apart(let_go, per_dof.max(variance).sqrt(), off_drawing)?)
+    }
+
+    /// Whether an arm is no longer the one that was drawn, zero offsets apart: then what the drawing could not tell says
+    /// little of it.
+    fn off_drawing(&self, x: &[f64]) -> bool {
+        let drawn = self.problem.parameters();
+        let known = self.problem.known(self.known.length_mm, self.known.angle_rad);
+        let base = self.problem.base_parameters();
+        let counts = |j: usize| j < self.problem.arm().geometry_count() && !is_zero_offset(self.problem, j);
+        self.free
+            .iter()
+            .zip(x)
+            .any(|(&j, value)| counts(j) && !base.contains(&j) && (value - drawn[j]).abs() > OFF_DRAWING * known[j])
     }
 
     /// Whether the readings determine, from where the fit is, the `let_go` directions that they see least: better than an
-    /// arm is known before, or so well that the fit is far from where they are a family. There a direction is seen by
-    /// `FAR` times what one degree of departure from the family's cause is known by: a tip r off the last axis, of which
-    /// σ is known, is seen to turn about it with u = σ / r. sigma: of a whitened residual.
-    fn tells_apart(&mut self, let_go: usize, sigma: f64) -> Result<bool> {
+    /// arm is known before, or, of an arm off its drawing, so well that it is far from where they are a family: a tip r
+    /// off the last axis, known to σ, is seen to turn about it with u = σ / r. sigma: of a whitened residual.
+    fn tells_apart(&mut self, let_go: usize, sigma: f64, off_drawing: bool) -> Result<bool> {
         let parameters = self.parameters();
         let symmetries: Vec<Vec<f64>> =
             self.pins.iter().map(|pin| pin.direction_at(self.problem, self.free, &parameters)).collect();
@@ -185,8 +201,8 @@ impl<'a> Way<'a> {
         let units = self.problem.parameter_units();
         let reach_mm = self.problem.reach_mm();
         let natural = |unknown: usize| match units[self.free[unknown]] {
-            Unit::Rad => FAR,
-            Unit::Mm => FAR * reach_mm,
+            Unit::Rad if off_drawing => FAR,
+            Unit::Mm if off_drawing => FAR * reach_mm,
             _ => 0.0,
         };
         let well = |unknown: usize| natural(unknown).max(known[self.free[unknown]]);
