@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 from tests.foreign_tables import second_sheet, sheet
 from tests.small_study import BARS, STUDY, SmallStudy, says
 
-from ulna.formats.tables.workbook_cell import address, far_cell
+from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
 
 TABLE = pl.read_csv(BARS.encode())
 Edit = Callable[[Any], object]
@@ -150,6 +151,23 @@ def test_any_byte_may_be_wrong(tmp_path: Path) -> None:
         small.write("b.xlsx", content[:k] + bytes([content[k] ^ 0x55]) + content[k + 1 :])
         refused += small.refuses()
     assert refused > 20
+
+
+@pytest.mark.parametrize("turned", [0x01, 0x55, 0x80, 0xFF])
+def test_any_byte_of_the_headers_may_be_wrong(tmp_path: Path, turned: int) -> None:
+    """Sizes, offsets and methods of the archive's parts: what looks into it finds a cell, or none."""
+    sheet(TABLE, tmp_path / "good.xlsx")
+    content = (tmp_path / "good.xlsx").read_bytes()
+    local = [start + k for start in starts(content, b"PK\x03\x04") for k in range(30)]
+    directory = range(content.index(b"PK\x01\x02"), len(content))
+    for k in [*local, *directory]:
+        (tmp_path / "b.xlsx").write_bytes(content[:k] + bytes([content[k] ^ turned]) + content[k + 1 :])
+        assert far_cell(tmp_path / "b.xlsx", "Sheet1") is None
+        assert len(stored_cell(tmp_path / "b.xlsx", "Sheet1", "B4")) == 2
+
+
+def starts(content: bytes, mark: bytes) -> list[int]:
+    return [match.start() for match in re.finditer(re.escape(mark), content)]
 
 
 @pytest.mark.parametrize("far", ["AMJ50000", "AMJ1048576", "XFD1048576"])

@@ -5,6 +5,7 @@ The parts of the file are those of ECMA-376 (Office Open XML), Part 1, sections 
 
 from __future__ import annotations
 
+import lzma
 import posixpath
 import re
 import xml.etree.ElementTree as ElementTree
@@ -13,6 +14,12 @@ import zlib
 from pathlib import Path
 
 _ID = "{http://schemas.openxmlformats.org/officeDocument/2006/relationships}id"
+
+_NOT_AS_EXPECTED = (
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, ElementTree.ParseError),
+    *(OSError, EOFError, LookupError, ValueError, RuntimeError, StopIteration),
+)
+"""What a damaged archive, or one that another program built otherwise, ends in."""
 
 _CHUNK = 1 << 20
 _MOST_CELLS = 30_000_000
@@ -46,7 +53,7 @@ def stored_cell(path: Path, sheet: str, reference: str) -> tuple[str | None, str
                 elif element.tag.endswith("}c") and element.get("r") == reference:
                     formula = next((each.text or "" for each in element if each.tag.endswith("}f")), None)
                     return formula, next((each.text or "" for each in element if each.tag.endswith("}v")), "")
-    except (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, OSError, RuntimeError, StopIteration):
+    except _NOT_AS_EXPECTED:
         pass
     return None, ""
 
@@ -70,7 +77,7 @@ def far_cell(path: Path, sheet: str) -> str | None:
                 match = _ANY.search(chunk, at) if at >= 0 else None
                 last = match[1] if match else last
                 row = max(row, int(re.sub(rb"[A-Z]", b"", last) or b"0"))
-    except (zipfile.BadZipFile, zlib.error, ElementTree.ParseError, KeyError, OSError, RuntimeError, StopIteration):
+    except _NOT_AS_EXPECTED:
         return None
     span = row * max(_column(widest), 26)
     if span < _MOST_CELLS or 20 * count > span:
