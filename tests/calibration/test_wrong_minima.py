@@ -107,15 +107,16 @@ def test_what_the_start_pinned_is_let_go_where_the_fit_has_left_it(noise_mm: flo
     assert np.isfinite(on_axis.covariance).all()
 
 
+@pytest.mark.parametrize("start", ["given", "search"])
 @pytest.mark.parametrize("seed", range(5))
-def test_noise_alone_releases_no_family(seed: int) -> None:
+def test_noise_alone_releases_no_family(seed: int, start: str) -> None:
     """A probe that is straight stays straight: its turn about the last axis is not told by noise."""
     rng = np.random.default_rng(seed)
     truth = replace(table_4(), tips_mm=np.array([[0.0, 0.0, 200.0]]))
     points = virtual.coordinates(truth, rng, 60, True)
     points = replace(points, features_mm=points.features_mm + 0.02 * rng.standard_normal((60, 3)))
     problem = core_problem(truth, [points])
-    found = _core.fit(problem, np.zeros(len(problem.parameter_names), bool))
+    found = _core.fit(problem, np.zeros(len(problem.parameter_names), bool), start=start, seed=seed)
     tip_mm = found.parameters[-3:]
     assert np.hypot(tip_mm[0], tip_mm[1]) < 0.05
     assert found.identifiability.determined < len(problem.parameter_names) - 2

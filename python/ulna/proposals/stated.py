@@ -53,7 +53,7 @@ def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated |
         return [kind_question()]
     if answers.artefact not in KINDS:
         raise UlnaInputError(
-            f"--artefact: got '{answers.artefact}', expected {', '.join(KINDS)}.{nearest(answers.artefact, KINDS)}"
+            f"--artefact: got '{answers.artefact}', expected a kind of artefact.{nearest(answers.artefact, KINDS)}"
         )
     kind = KINDS[answers.artefact]
     fields = kind.table.model_fields

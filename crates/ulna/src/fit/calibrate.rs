@@ -249,18 +249,12 @@ pub fn fit_from(
     check_count(problem, free)?;
     let (residuals_start, rms_start_mm) = problem.unweighted(&start);
     let mut solution = solve_from(problem, free, from, options, monitor)?;
-    let mut is_free = vec![false; start.len()];
-    free.iter().for_each(|&j| is_free[j] = true);
+    let is_free = problem.is_free(free);
     let folded = fold(
         problem.arm(),
         &solution.parameters,
         &start,
-        Freedom {
-            free: &is_free,
-            base_free: problem.base_free(),
-            mirror_free: problem.mirror_free(),
-            zero_offsets_unknown: options.start == Start::Search,
-        },
+        Freedom::of(problem, &is_free, options.start == Start::Search),
     );
     solution.parameters = folded.parameters;
     if !folded.steps.is_empty() {

@@ -77,6 +77,7 @@ const BETTER: f64 = 0.01;
 const FAR_BETTER: f64 = 1e-4;
 const SEVERAL: usize = 10;
 
+/// The start from which a fit to the readings ends best, as far as some of them tell.
 pub(crate) fn search(
     problem: &Problem,
     free: &[usize],
@@ -135,17 +136,14 @@ pub(crate) fn better_image(
         return Ok(found);
     }
     let whole = as_they_are(problem, &found.signs);
-    let mut is_free = vec![false; whole.parameter_count()];
-    free.iter().for_each(|&j| is_free[j] = true);
-    let freedom =
-        Freedom { free: &is_free, base_free: problem.base_free(), mirror_free: true, zero_offsets_unknown: true };
+    let is_free = whole.is_free(free);
     let parameters = at(&whole, free, &found.x);
-    let Some(image) = mirror_image(whole.arm(), &parameters, freedom) else {
+    let Some(image) = mirror_image(whole.arm(), &parameters, Freedom::of(&whole, &is_free, true)) else {
         return Ok(found);
     };
     let (mut as_found, mut mirrored) = (found.x.clone(), free.iter().map(|&j| image[j]).collect::<Vec<_>>());
-    let cost = descend(&whole, free, pins, &mut as_found, monitor)?;
-    let cost_mirrored = descend(&whole, free, pins, &mut mirrored, monitor)?;
+    let (cost, _) = descend(&whole, free, pins, &mut as_found, monitor)?;
+    let (cost_mirrored, _) = descend(&whole, free, pins, &mut mirrored, monitor)?;
     Ok(Searched { x: if cost_mirrored < cost { mirrored } else { as_found }, ..found })
 }
 
@@ -160,7 +158,7 @@ pub(crate) fn does_better(
 ) -> Result<bool> {
     let whole = as_they_are(problem, &found.signs);
     let ends = |x: &[f64]| descend(&whole, free, pins, &mut x.to_vec(), monitor);
-    Ok(ends(&found.x)? < (1.0 - BETTER) * ends(elsewhere)?)
+    Ok(ends(&found.x)?.0 < (1.0 - BETTER) * ends(elsewhere)?.0)
 }
 
 /// Some of the readings, nothing made of them.
@@ -171,9 +169,18 @@ fn as_they_are(problem: &Problem, signs: &[f64]) -> Problem {
     some
 }
 
-fn descend(problem: &Problem, free: &[usize], pins: &[Pin], x: &mut [f64], monitor: &dyn Monitor) -> Result<f64> {
+/// One start: the cost where it ends, and what of it is rounding.
+fn descend(
+    problem: &Problem,
+    free: &[usize],
+    pins: &[Pin],
+    x: &mut [f64],
+    monitor: &dyn Monitor,
+) -> Result<(f64, f64)> {
     let options = Options { max_iterations: ITERATIONS, ..Options::default() };
-    Ok(minimize(&mut Assembly::new(problem, free, pins, monitor), x, &options, &Quiet(monitor))?.cost)
+    let mut assembly = Assembly::new(problem, free, pins, monitor);
+    let cost = minimize(&mut assembly, x, &options, &Quiet(monitor))?.cost;
+    Ok((cost, assembly.negligible_cost()))
 }
 
 /// Whether an arm whose tip does not move, or hardly, explains the readings: it is no arm.
@@ -201,15 +208,8 @@ pub(crate) fn search_over(
     monitor: &dyn Monitor,
     mut throw: impl FnMut(&mut Problem, usize, &mut [f64]),
 ) -> Result<Searched> {
-    let options = Options { max_iterations: ITERATIONS, ..Options::default() };
-    let quiet = Quiet(monitor);
-    let descend = |thin: &Problem, x: &mut [f64]| -> Result<(f64, f64)> {
-        let mut assembly = Assembly::new(thin, free, pins, monitor);
-        let cost = minimize(&mut assembly, x, &options, &quiet)?.cost;
-        Ok((cost, assembly.negligible_cost()))
-    };
     let mut x = given.to_vec();
-    let (cost, negligible) = descend(&thin, &mut x)?;
+    let (cost, negligible) = descend(&thin, free, pins, &mut x, monitor)?;
     let mut best = Searched { x, cost, starts: 1, signs: thin.arm().signs().collect() };
     let (mut agreeing, mut runner_up) = (1, f64::MAX);
     let dof = thin.equations() as f64 - thin.placement_unknowns() as f64 - free.len() as f64;
@@ -220,7 +220,7 @@ pub(crate) fn search_over(
         }
         let mut x = given.to_vec();
         throw(&mut thin, attempt, &mut x);
-        let (cost, _) = descend(&thin, &mut x)?;
+        let (cost, _) = descend(&thin, free, pins, &mut x, monitor)?;
         best.starts += 1;
         let tie = SAME_MINIMUM * best.cost + negligible;
         if cost <= best.cost + tie {

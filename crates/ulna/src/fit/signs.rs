@@ -118,14 +118,8 @@ fn nearest(
     zero_offsets_unknown: bool,
 ) -> Twin {
     let (arm, nominal) = (problem.arm(), problem.parameters());
-    let mut is_free = vec![false; nominal.len()];
-    free.iter().for_each(|&j| is_free[j] = true);
-    let freedom = Freedom {
-        free: &is_free,
-        base_free: problem.base_free(),
-        mirror_free: problem.mirror_free(),
-        zero_offsets_unknown,
-    };
+    let is_free = problem.is_free(free);
+    let freedom = Freedom::of(problem, &is_free, zero_offsets_unknown);
     let distance = Distance::new(arm, &nominal, freedom);
     let joints: Vec<usize> = (0..arm.encoders()).filter(|i| unknown >> i & 1 == 1).collect();
     // a base that readings know cannot be turned over

@@ -5,6 +5,7 @@
 //! tips' x and y negated. The mirror image negates all alpha, beta, d and the tips' z. (MODEL section 4)
 
 use crate::arm::{Arm, JointModel, Unit};
+use crate::problem::Problem;
 use std::f64::consts::PI;
 
 /// The twin nearest to a nominal arm.
@@ -14,6 +15,14 @@ pub struct Folded {
     pub parameters: Vec<f64>,
     /// What led there: "flip of joint 3", "mirror".
     pub steps: Vec<String>,
+}
+
+impl<'a> Freedom<'a> {
+    /// That of a problem whose readings are as they are. free: of each parameter.
+    pub(crate) fn of(problem: &Problem, free: &'a [bool], zero_offsets_unknown: bool) -> Freedom<'a> {
+        let (base_free, mirror_free) = (problem.base_free(), problem.mirror_free());
+        Freedom { free, base_free, mirror_free, zero_offsets_unknown }
+    }
 }
 
 /// What a step to the mirror image is called.
@@ -76,7 +85,7 @@ pub fn fold(arm: &Arm, parameters: &[f64], nominal: &[f64], freedom: Freedom) ->
     Folded { parameters: folded, steps }
 }
 
-/// The arm mirrored, as an arm with the held parameters as they are; none where they tell it from its mirror image.
+/// The arm mirrored, whatever the readings say of that, as an arm with the held parameters as they are; none where they tell it from its mirror image.
 pub(crate) fn mirror_image(arm: &Arm, parameters: &[f64], freedom: Freedom) -> Option<Vec<f64>> {
     let twins = Twins { arm, parameters, freedom };
     let mut image = twins.candidates().map(|flips| twins.twin(flips, true)).find(|p| twins.allowed(p))?;

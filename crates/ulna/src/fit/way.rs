@@ -5,6 +5,7 @@ use crate::artefacts::Weighing;
 use crate::error::Result;
 use crate::fit::search::is_zero_offset;
 use crate::fit::settle::Settling;
+use crate::fit::symmetry::{Freedom, fold};
 use crate::identify::families::pins;
 use crate::identify::identifiability::Known;
 use crate::monitor::{Monitor, Unwatched};
@@ -172,17 +173,19 @@ impl<'a> Way<'a> {
             || self.tells_apart(let_go, per_dof.max(variance).sqrt(), off_drawing)?)
     }
 
-    /// Whether an arm is no longer the one that was drawn, zero offsets apart: then what the drawing could not tell says
-    /// little of it.
+    /// Whether an arm, as the twin nearest to the drawing, is no longer the one that was drawn, zero offsets apart: then what
+    /// the drawing could not tell says little of it.
     fn off_drawing(&self, x: &[f64]) -> bool {
-        let drawn = self.problem.parameters();
+        let (drawn, mut parameters) = (self.problem.parameters(), self.start.clone());
+        self.free.iter().zip(x).for_each(|(&j, &value)| parameters[j] = value);
+        let is_free = self.problem.is_free(self.free);
+        let twin = fold(self.problem.arm(), &parameters, &drawn, Freedom::of(self.problem, &is_free, true)).parameters;
         let known = self.problem.known(self.known.length_mm, self.known.angle_rad);
         let base = self.problem.base_parameters();
         let counts = |j: usize| j < self.problem.arm().geometry_count() && !is_zero_offset(self.problem, j);
         self.free
             .iter()
-            .zip(x)
-            .any(|(&j, value)| counts(j) && !base.contains(&j) && (value - drawn[j]).abs() > OFF_DRAWING * known[j])
+            .any(|&j| counts(j) && !base.contains(&j) && (twin[j] - drawn[j]).abs() > OFF_DRAWING * known[j])
     }
 
     /// Whether the readings determine, from where the fit is, the `let_go` directions that they see least: better than an

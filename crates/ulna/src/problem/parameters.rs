@@ -52,6 +52,13 @@ impl Problem {
         known
     }
 
+    /// For each parameter, whether it is among the free ones.
+    pub(crate) fn is_free(&self, free: &[usize]) -> Vec<bool> {
+        let mut is_free = vec![false; self.parameter_count()];
+        free.iter().for_each(|&j| is_free[j] = true);
+        is_free
+    }
+
     /// What is known of parameters before any reading: as stated, and of fitted dimensions by their calibration.
     pub fn priors(&self) -> Vec<Prior> {
         let mut priors = self.stated_priors.clone();
