@@ -28,6 +28,7 @@ from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
+from ulna.study.given import StudyLike, as_study
 from ulna.study.options import with_options
 from ulna.study.parameters import hold_mask
 from ulna.study.study import Study
@@ -72,7 +73,7 @@ class CrossValidation:
 
 
 def cross_validate(
-    study: Study,
+    study: StudyLike,
     by: str | int = "placement",
     progress: Progress | None = None,
     **overrides: Any,
@@ -82,7 +83,7 @@ def cross_validate(
     `by`: each placement of each artefact; each artefact; or a number of random folds (2 or more), dealt by
     `study.fit.seed`. `overrides` replace fields of `study.fit`. Raises UlnaInputError, KeyboardInterrupt.
     """
-    study = with_options(study, **overrides)
+    study = with_options(as_study(study), **overrides)
     how, left_out = folds(study, by)
     groups = []
     for number, fold in enumerate(left_out):

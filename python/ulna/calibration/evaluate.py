@@ -14,6 +14,7 @@ import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
+from ulna.arm.given import ArmLike, as_arm
 from ulna.calibration.figures import figures
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
@@ -23,6 +24,7 @@ from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.study.data import FitOptions
+from ulna.study.given import StudyLike, as_study
 from ulna.study.study import Study
 
 FORMAT: Literal["ulna-evaluation/1"] = "ulna-evaluation/1"
@@ -65,11 +67,13 @@ class Evaluation:
             self.residuals.write_csv(staging / "residuals.csv")
 
 
-def evaluate(arm: Arm, study: Study, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:
+def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:
     """Apply `arm` to the study's readings; the study's own arm only gives the probes their names.
 
-    Raises UlnaInputError where the arm has another number of joints or lacks a probe that the readings use.
+    `arm`: an arm, a result, or a path of one; `study`: a study or its path. Raises UlnaInputError where the arm has
+    another number of joints or lacks a probe that the readings use.
     """
+    arm, study = as_arm(arm), as_study(study)
     # nothing of the arm is fitted, so what the study says of the fit does not matter
     fitting = dataclasses.replace(study_of_arm(study, arm), fit=FitOptions(seed=study.fit.seed))
     fitted = run_fit(fitting, lambda names: np.ones(len(names), dtype=bool), progress)

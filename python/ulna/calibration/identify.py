@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ulna.ground.errors import UlnaInputError
 from ulna.study.assembly import assemble
-from ulna.study.study import Study
+from ulna.study.given import StudyLike, as_study
 
 if TYPE_CHECKING:
     import ulna._core as _core
@@ -60,13 +60,14 @@ class Identification:
         return asdict(self)
 
 
-def identify(study: Study) -> Identification:
+def identify(study: StudyLike) -> Identification:
     """What the study's readings can determine at its arm's start values, without fitting.
 
     The study's `fit.free` and `fit.hold` say what is asked about. Raises UlnaInputError.
     """
     import ulna._core as _core
 
+    study = as_study(study)
     assembled = assemble(study)
     if assembled.hold.all():
         raise UlnaInputError(

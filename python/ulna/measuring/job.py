@@ -12,14 +12,11 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
-from ulna.arm.covariance_file import noise_of_result
-from ulna.arm.file import WHAT
+from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, read_header, stream
-from ulna.formats.toml import check_format, read_json
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
@@ -35,7 +32,7 @@ class MeasureJob:
 
     def __init__(
         self,
-        arm: Arm | str | Path,
+        arm: ArmLike,
         readings: Path,
         probe: str | None = None,
         angle: str = "rad",
@@ -46,11 +43,8 @@ class MeasureJob:
         covariance: bool = False,
     ) -> None:
         """Raises UlnaInputError for whatever is wrong before the first row."""
-        if isinstance(arm, Arm):
-            self.arm = arm
-        else:
-            self.arm, stated_rad = load_arm_and_noise(Path(arm))
-            encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        self.arm, stated_rad = arm_and_noise(arm)
+        encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
@@ -75,8 +69,9 @@ class MeasureJob:
             self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
         elif covariance:
             raise UlnaInputError(
-                f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
-                "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
+                f"{arm if isinstance(arm, str | Path) else self.arm.name}: no uncertainty is known of this arm, so its "
+                "points have no covariance; expected the result.json of a calibration. Name it, or leave --covariance "
+                "out."
             )
         self._outside = Outside(self.arm, "q")
         self.rows = 0
@@ -223,14 +218,3 @@ class MeasureJob:
                     "need. Add it to the arm file."
                 )
         return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
-
-
-def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
-    """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
-    stated. Raises UlnaInputError."""
-    if path.suffix.lower() != ".json":
-        return Arm.load(path), None
-    document, _ = read_json(path, WHAT)
-    check_format(document, path, "ulna-result")
-    arm = Arm.of_result(document, path)
-    return arm, noise_of_result(document, arm, path)

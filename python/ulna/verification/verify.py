@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from ulna.arm.given import ArmLike
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
@@ -87,14 +88,14 @@ def lengths_of(state: StateResult) -> list[Judged]:
     return [judged for test in state.tests if kind_of(test.kind).length_errors for judged in test.figures[0].values]
 
 
-def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress | None = None) -> Verification:
-    """An acceptance test: `plan` a verify file; `arm` an arm file or a result, for encoder readings.
+def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | None = None) -> Verification:
+    """An acceptance test: `plan` a verify file; `arm`, for encoder readings, an arm, a result, or a path of one.
 
     Raises UlnaInputError for whatever cannot be used. Warns with InputWarning of what is used with a remark.
     """
     import warnings
 
-    stated = load_verify(Path(plan), None if arm is None else Path(arm))
+    stated = load_verify(Path(plan), arm)
     for remark in stated.warnings:
         warnings.warn(remark, InputWarning, stacklevel=2)
     rule = DecisionRule.of(stated.profile.file.decision, stated.file.rule)
