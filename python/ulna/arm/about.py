@@ -30,7 +30,11 @@ def about_arm(arm: ArmData) -> About:
     joints = [_joint(number, joint, tilted, number == bare) for number, joint in enumerate(arm.joints, start=1)]
     heads = ["joint", "theta0 / rad", "d / mm", "a / mm", "alpha / rad", *["beta / rad"] * tilted, "sign"]
     probes = [
-        [name, *(fixed(float(value), 4) for value in probe.tip_mm), "–" if probe.ball_mm is None else f"{probe.ball_mm:g}"]
+        [
+            name,
+            *(fixed(float(value), 4) for value in probe.tip_mm),
+            "–" if probe.ball_mm is None else f"{probe.ball_mm:g}",
+        ]
         for name, probe in arm.probes.items()
     ]
     return About(

@@ -67,7 +67,7 @@ class Arm(Shown, ArmData):
     ) -> Arm:
         """The arm that a table of Denavit–Hartenberg parameters describes: a row for each joint, from the base.
 
-        table: the path of one, a DataFrame, an Arrow table, a dict of arrays, a list of dicts, or a list of rows of four
+        table: the path of one, a DataFrame, an Arrow table, a dict of arrays, a list of dicts, or rows of four
         numbers in the order theta0, d, a, alpha. Columns theta0 (or offset, which is -theta0), d, a, alpha; perhaps
         beta, sign, joint, name. convention: whether a row's alpha and a stand behind its joint ("dh") or before it
         ("modified-dh"). Units are in the columns' names (`a_mm`, `alpha_deg`), else stated; never guessed. tip: of the

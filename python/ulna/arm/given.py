@@ -38,7 +38,8 @@ def as_arm(given: ArmLike) -> Arm:
 
 
 def arm_and_noise(given: ArmLike) -> tuple[Arm, F64 | None]:
-    """The arm; of a result also the encoders' standard deviations (n,) rad that its study stated. Raises as `as_arm`."""
+    """The arm; of a result also the encoders' standard deviations (n,) rad that its study stated. Raises as
+    `as_arm`."""
     if isinstance(given, Arm):
         return given, None
     if isinstance(given, StandsForArm):

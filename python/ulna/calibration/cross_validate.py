@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.calibration.about import about_cross_validation
 from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import FigureEntry, Figures
@@ -27,6 +28,7 @@ from ulna.calibration.summary import GroupFigures
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown
 from ulna.study.assembly import assemble
 from ulna.study.given import StudyLike, as_study
 from ulna.study.options import with_options
@@ -37,8 +39,8 @@ FORMAT: Literal["ulna-cross-validation/1"] = "ulna-cross-validation/1"
 FILES = ("cross-validation.json",)
 
 
-@dataclass
-class CrossValidation:
+@dataclass(repr=False)
+class CrossValidation(Shown):
     """How well arms fitted without a group explain that group."""
 
     by: str
@@ -64,6 +66,10 @@ class CrossValidation:
             after=FigureEntry.model_construct(None, **self.after),
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         ).model_dump(mode="json", exclude_unset=True)
+
+    def about(self) -> About:
+        """Over all groups."""
+        return about_cross_validation(self.by, self.groups, self.before, self.after)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `cross-validation.json` into a folder. Raises UlnaInputError."""

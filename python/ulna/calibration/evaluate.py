@@ -15,6 +15,7 @@ import polars as pl
 
 from ulna.arm.arm import Arm
 from ulna.arm.given import ArmLike, as_arm
+from ulna.calibration.about import about_evaluation
 from ulna.calibration.figures import figures
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
@@ -23,6 +24,7 @@ from ulna.calibration.result_file import EvaluatedEntry, EvaluationFile, Provena
 from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.shown import About, Shown
 from ulna.study.data import FitOptions
 from ulna.study.given import StudyLike, as_study
 from ulna.study.study import Study
@@ -31,8 +33,8 @@ FORMAT: Literal["ulna-evaluation/1"] = "ulna-evaluation/1"
 FILES = ("evaluation.json", "residuals.csv")
 
 
-@dataclass
-class Evaluation:
+@dataclass(repr=False)
+class Evaluation(Shown):
     """What an arm makes of readings."""
 
     arm: Arm
@@ -58,6 +60,10 @@ class Evaluation:
             fit=EvaluatedEntry.model_construct(readings=self.readings, rms_mm=self.rms_mm),
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         ).model_dump(mode="json", exclude_unset=True)
+
+    def about(self) -> About:
+        """Over all readings."""
+        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `evaluation.json` and `residuals.csv` into a folder: both or none. Raises UlnaInputError."""

@@ -6,7 +6,9 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ulna.arm.directions import combination
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown
 from ulna.study.assembly import assemble
 from ulna.study.given import StudyLike, as_study
 
@@ -14,8 +16,8 @@ if TYPE_CHECKING:
     import ulna._core as _core
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Shown):
     """Which free parameters, and which combinations of them, readings determine (MODEL: rank of the Jacobian)."""
 
     parameters: int
@@ -58,6 +60,23 @@ class Identification:
     def as_dict(self) -> dict[str, Any]:
         """JSON types only."""
         return asdict(self)
+
+    def about(self) -> About:
+        """How many directions are determined, and what is not."""
+        facts = {"condition": f"{self.condition:.2g} (smallest singular value over the largest)"}
+        if self.from_prior:
+            facts["prior alone"] = ", ".join(self.from_prior)
+        weak = [f"weak: {combination(each['combination'])}: u {each['u']:.2g} {each['unit']}" for each in self.weak]
+        return About(
+            f"Identification: {self.determined} of {self.parameters} combinations of parameters determined",
+            facts,
+            notes=[*map(not_determined, self.lost), *weak],
+        )
+
+
+def not_determined(direction: dict[str, Any]) -> str:
+    """A lost direction as a remark."""
+    return f"not determined: {combination(direction['combination'])}: {direction['because']}"
 
 
 def identify(study: StudyLike) -> Identification:

@@ -33,6 +33,6 @@ def nearest(name: str, known: Iterable[str]) -> str:
 def wrong_type(given: object, expected: str) -> TypeError:
     """Of an argument that is none of what may be given: one sentence that says what it is and what was expected."""
     kind = type(given).__name__
-    article = "an" if kind[:1].lower() in "aeiou" else "a"
+    article = "an" if kind[:1].lower() in "aeiou" or kind == "ndarray" else "a"
     shown = "None" if given is None else f"{article} {kind}"
     return TypeError(f"got {shown}, expected {expected}.")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +16,29 @@ from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
 from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.table import count_rows, read_header, stream
+from ulna.formats.table import count_rows, named_header, read_header, stream
 from ulna.formats.units import MM_PER
-from ulna.ground.arrays import F64, Progress
+from ulna.ground.arrays import F64, I64, Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
-from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
+from ulna.measuring.tip_uncertainty import COVARIANCE, DIAGONAL, TipUncertainty
+from ulna.measuring.units import rad_per
 from ulna.study.readings.checks import Outside, check_scale
 from ulna.study.readings.columns import check_columns, known_columns
 from ulna.study.readings.conditions import check_values, columns_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Readings of N poses, all of them."""
+
+    q_rad: F64
+    """(N, n)"""
+    probe: I64
+    """(N,) index into the arm's probes."""
+    conditions: Conditions
+    texts: dict[str, pl.Series]
+    """`id` and `probe`, where the table has them."""
 
 
 class MeasureJob:
@@ -33,7 +47,7 @@ class MeasureJob:
     def __init__(
         self,
         arm: ArmLike,
-        readings: Path,
+        readings: Path | Header,
         probe: str | None = None,
         angle: str = "rad",
         units: str = "mm",
@@ -42,15 +56,21 @@ class MeasureJob:
         temperature_c: float | None = None,
         covariance: bool = False,
     ) -> None:
-        """Raises UlnaInputError for whatever is wrong before the first row."""
+        """readings: a file, or a table that is open already. Raises UlnaInputError for whatever is wrong before the
+        first row."""
         self.arm, stated_rad = arm_and_noise(arm)
         encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
-        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
+        known = known_columns(self.arm.n, False)
+        self.header: Header = (
+            named_header(readings, layout, known)
+            if isinstance(readings, Header)
+            else read_header(readings, WHAT_READINGS, layout, known)
+        )
         self._angle = angle
-        self._rad_per = self._angle_factors(angle)
+        self._rad_per = rad_per(self.arm, angle)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
         check_columns(self.header, self.arm.n, self.arm.name, remarks)
@@ -80,8 +100,8 @@ class MeasureJob:
     def columns(self) -> list[str]:
         """Of the output."""
         u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
-        beside = ["c_xy", "c_xz", "c_yz"] if self._covariance else []
-        return [*self._texts, "x", "y", "z", *u, *beside]
+        matrix = list(COVARIANCE) if self._covariance else []
+        return [*self._texts, "x", "y", "z", *u, *matrix]
 
     def check(self) -> None:
         """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
@@ -102,8 +122,25 @@ class MeasureJob:
                 progress("measure", self.rows, total)
         if not self.rows:
             raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_of_limits()
+
+    def whole(self) -> Whole:
+        """All readings at once. Raises UlnaInputError; warns as `frames`."""
+        pieces = list(self._pieces())
+        parts = [(self._angles(each), self._probes(each), self._conditions(each)) for each in pieces]
+        if not parts:
+            raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_of_limits()
+        probe = np.concatenate([np.broadcast_to(np.asarray(own, dtype=np.int64), len(q)) for q, own, _ in parts])
+        conditions = Conditions()
+        for key in parts[0][2]:
+            conditions[key] = np.concatenate([said[key] for _, _, said in parts])  # type: ignore[literal-required]
+        texts: dict[str, pl.Series] = {name: pl.concat([each.texts[name] for each in pieces]) for name in self._texts}
+        return Whole(np.concatenate([q for q, _, _ in parts]), probe, conditions, texts)
+
+    def _warn_of_limits(self) -> None:
         for remark in self._outside.remarks(self.header.path):
-            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=2)
+            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=3)
 
     @property
     def notes(self) -> list[str]:
@@ -127,7 +164,7 @@ class MeasureJob:
                 c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), at)
             values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
             if self._covariance:
-                values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
+                values.append(c_mm2 / MM_PER[self.unit] ** 2)
         numbers = np.concatenate(values, axis=1)
         columns = dict(piece.texts)
         for k, name in enumerate(self.columns[len(self._texts) :]):
@@ -201,20 +238,3 @@ class MeasureJob:
             self.arm.probe_index(probe)
             remarks.append(f"{self.header.path}: --probe {probe} is not used: the file has its own column 'probe'.")
         return None
-
-    def _angle_factors(self, angle: str) -> F64:
-        if angle == "rad":
-            return np.ones(self.arm.n)
-        if angle == "deg":
-            return np.full(self.arm.n, math.pi / 180.0)
-        if angle != "counts":
-            raise UlnaInputError(
-                f"measure: angle '{angle}'; expected rad, deg or counts.{nearest(angle, ('rad', 'deg', 'counts'))}"
-            )
-        for k, joint in enumerate(self.arm.joints, start=1):
-            if joint.counts_per_turn is None:
-                raise UlnaInputError(
-                    f"arm '{self.arm.name}': key 'joint.{k}.counts_per_turn' is missing, which readings in counts "
-                    "need. Add it to the arm file."
-                )
-        return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])

@@ -13,6 +13,7 @@ from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.shown import About, Shown, Table
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
@@ -28,8 +29,8 @@ TABLE = "values.csv"
 PICTURES = ("lengths.svg", "lengths.png")
 
 
-@dataclass(frozen=True)
-class Verification:
+@dataclass(frozen=True, repr=False)
+class Verification(Shown):
     """What an acceptance test found."""
 
     plan: VerifyPlan
@@ -50,6 +51,25 @@ class Verification:
         if named is not None:
             return named
         return self.plan.arms[0].arm.name if self.plan.arms else "not named"
+
+    def about(self) -> About:
+        """Each figure in each state, with its limit and verdict."""
+        rows = [
+            [
+                state.state,
+                figure.definition.key,
+                figure.verdict or "no limit",
+                f"{1000.0 * figure.worst.single.value_mm:.1f}",
+                "–" if figure.worst.limit_mm is None else f"{1000.0 * figure.worst.limit_mm:.1f}",
+            ]
+            for state in self.states
+            for figure in state.figures.values()
+        ]
+        return About(
+            f"Verification of '{self.arm}' after {self.plan.profile.file.name}: {self.verdict or 'no limit stated'}",
+            {},
+            [Table(["state", "figure", "verdict", "worst / µm", "limit / µm"], rows, texts=3)],
+        )
 
     def file(self) -> VerificationFile:
         """`verification.json`, lengths in mm."""

@@ -80,8 +80,8 @@ def dh_of(header: Header, length: str | None = None, angle: str | None = None) -
             continue
         if name in tips:
             raise UlnaInputError(
-                f"{header.path}: {header.where(k)}, column 'name': got '{name}' again; expected a name of its own for each "
-                "tip. Correct it."
+                f"{header.path}: {header.where(k)}, column 'name': got '{name}' again; expected a name of its own for "
+                "each tip. Correct it."
             )
         tips[name] = row
     factors = {column.factor for column in columns if column.parameter in LENGTHS}
