@@ -227,9 +227,10 @@ def test_the_whole_covariance_of_each_point(tmp_path: Path) -> None:
     for unit, mm in (("mm", 1.0), ("in", 25.4)):
         table = ulna.measure(known, path, covariance=True, units=unit).table  # type: ignore[arg-type]
         assert table is not None
-        assert table.columns == ["x", "y", "z", "u_x", "u_y", "u_z", "c_xy", "c_xz", "c_yz"]
-        beside = np.stack([expected[:, 0, 1], expected[:, 0, 2], expected[:, 1, 2]], axis=1)
-        np.testing.assert_allclose(table.select("c_xy", "c_xz", "c_yz").to_numpy(), beside / mm**2, rtol=1e-9)
+        six = ["c_xx", "c_xy", "c_xz", "c_yy", "c_yz", "c_zz"]
+        assert table.columns == ["x", "y", "z", "u_x", "u_y", "u_z", *six]
+        i, j = np.triu_indices(3)
+        np.testing.assert_allclose(table.select(six).to_numpy(), expected[:, i, j] / mm**2, rtol=1e-9)
         u = np.sqrt(np.diagonal(expected, axis1=1, axis2=2)) / mm
         np.testing.assert_allclose(table.select("u_x", "u_y", "u_z").to_numpy(), u, rtol=1e-9)
     with pytest.raises(UlnaInputError, match=r"no uncertainty is known of this arm"):

@@ -29,8 +29,9 @@ AnyArm = TypeVar("AnyArm", bound=ArmData)
 
 
 def result_file(path: Path) -> Path:
-    """Of a folder the result.json in it; any other path as it is."""
-    return path / RESULT if path.is_dir() else path
+    """Of a folder with one the result.json in it; any other path as it is."""
+    inside = path / RESULT
+    return inside if path.is_dir() and inside.is_file() else path
 
 
 def load_arm(path: Path, make: type[AnyArm]) -> tuple[AnyArm, str]:

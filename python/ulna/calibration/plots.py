@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from ulna.study.given import StudyLike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+View = Literal["xy", "xz", "yz"]
 
 
 class Plots(ABC):
@@ -55,6 +57,6 @@ class Plots(ABC):
         known."""
 
     @abstractmethod
-    def map(self, ax: Axes | None = None) -> Axes:
-        """Residuals in space: as arrows at the tips, seen from above. Raises UlnaInputError where the study is not
-        known, or no residual has a direction."""
+    def map(self, view: View = "xy", ax: Axes | None = None) -> Axes:
+        """Residuals in space: arrows at the tips, seen from above (view "xy") or from a side ("xz", "yz"). Raises
+        UlnaInputError where the study is not known, or no residual has a direction."""

@@ -79,7 +79,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
     extras: list[JudgedExtra] = field(default_factory=list)
     """Blocks beyond geometry, each judged by readings left out."""
-    study: Study | None = field(default=None, compare=False)
+    study: Study | None = field(default_factory=lambda: None, compare=False)  # made on demand, so no class has one
     """What it was made of; None of a result that was read from a file, or sent to another process."""
 
     def __getstate__(self) -> dict[str, Any]:

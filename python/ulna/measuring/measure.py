@@ -150,7 +150,7 @@ def measure(
     `probe`: which is on; of an array also one name a row. `angle`: of the readings; `units`: of the points of a file.
     `separator`, `decimal`, `thousands`, `encoding`, `comment`, `header`, `units_row`, `fill_down`, `sheet`, `dataset`,
     `columns`, `names`: how the table is written, as in a study's ``[[readings]]``.
-    `temperature_c`: of all readings, °C, where the arm's links grow with it and no column ``temperature`` says it; of an
+    `temperature_c`: of all readings, °C, where the arm's links grow with it and no column ``temperature`` has it; of an
     array also (N,) or (N, n). `approach`: of an array, (N, n), as `Arm.tip` has it.
     `covariance`: of a file, with a result, also the columns ``c_xx, c_xy, c_xz, c_yy, c_yz, c_zz`` of each point's
     covariance matrix, in the square of the unit.

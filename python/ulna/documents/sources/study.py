@@ -50,7 +50,7 @@ def _read(path: Path, calibration: Calibration) -> tuple[Study, str]:
 def _remarks(study: Study, path: Path, calibration: Calibration) -> list[Said]:
     """Another study than that of the result is refused."""
     check_same(study, calibration.result.provenance, calibration.file.path)
-    _check_rows(study, calibration.result, path)
+    check_rows(study, calibration.result, path)
     return []
 
 
@@ -77,11 +77,11 @@ def find_study(calibration: Calibration, given: Path | None) -> FoundStudy:
     study, _ = _read(root / name, calibration)
     if [file.sha256 for file in study.files] != [file.sha256 for file in files]:
         return FoundStudy(None, files, Said("study.changed", {"study": name, "files": name}))
-    _check_rows(study, calibration.result, root / name)
+    check_rows(study, calibration.result, root / name)
     return FoundStudy(study, files, None)
 
 
-def _check_rows(study: Study, result: Result, path: Path) -> None:
+def check_rows(study: Study, result: Result, path: Path) -> None:
     """Whether residuals and readings belong together row by row. Raises UlnaInputError."""
     rows = np.concatenate([group.row for group in study.readings])
     names = [name for group in study.readings for name in [group.artefact.name] * len(group)]
