@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, named_header, read_header, stream
+from ulna.formats.tables.coming import ComingTable
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import F64, I64, Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
@@ -55,9 +56,10 @@ class MeasureJob:
         layout: Layout = AS_EXPECTED,
         temperature_c: float | None = None,
         covariance: bool = False,
+        unused: Collection[str] = (),
     ) -> None:
-        """readings: a file, or a table that is open already. Raises UlnaInputError for whatever is wrong before the
-        first row."""
+        """readings: a file, or a table that is open already; unused: its own names of columns of which nothing is said.
+        Raises UlnaInputError for whatever is wrong before the first row."""
         self.arm, stated_rad = arm_and_noise(arm)
         encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
         if units not in MM_PER:
@@ -73,7 +75,8 @@ class MeasureJob:
         self._rad_per = rad_per(self.arm, angle)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
-        check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        asked = [column for column in map(self.header.find, unused) if column is not None]
+        check_columns(self.header, self.arm.n, self.arm.name, remarks, asked=asked)
         self._given = {"temperature_c": temperature_c}
         self._columns = self._needed(remarks)
         self._numbers = [*self._q, *(column for columns in self._columns.values() for column in columns)]
@@ -102,6 +105,11 @@ class MeasureJob:
         u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
         matrix = list(COVARIANCE) if self._covariance else []
         return [*self._texts, "x", "y", "z", *u, *matrix]
+
+    @property
+    def coming(self) -> bool:
+        """Whether the readings come as they are made, so that none can be read twice."""
+        return isinstance(self.header, ComingTable)
 
     def check(self) -> None:
         """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, Literal, TypedDict, Unpack, overload
 
@@ -15,63 +14,17 @@ from numpy.typing import ArrayLike
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
 from ulna.formats.frames import is_frame
-from ulna.formats.header import Header
-from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.layout import Layout
 from ulna.formats.output import new_file, refuse_inputs
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError, wrong_type
-from ulna.ground.shown import About, Shown, Table
 from ulna.measuring.arrays import measure_array, measure_frame
 from ulna.measuring.job import MeasureJob
 from ulna.measuring.measured import Measured
+from ulna.measuring.measurement import Measurement
 from ulna.measuring.written import TooManyRowsError, writer_of
 
 Angle = Literal["rad", "deg", "counts"]
-
-
-@dataclass(repr=False)
-class Measurement(Shown):
-    """What was measured of a file: a table in memory, or a file."""
-
-    rows: int
-    columns: list[str]
-    """`id` and `probe` where the readings have them; `x, y, z`; `u_x, u_y, u_z` (standard uncertainties) where the
-    arm came from a result; `c_xx, c_xy, c_xz, c_yy, c_yz, c_zz` (covariances) where they were asked for."""
-    unit: str
-    """Of the coordinates and their uncertainties; of covariances its square."""
-    path: Path | None = None
-    table: pl.DataFrame | None = None
-    notes: list[str] = field(default_factory=list)
-    """Why uncertainties were left empty, and what to do about it."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """JSON types only."""
-        return {
-            "format": "ulna-measurement/1",
-            "rows": self.rows,
-            "columns": self.columns,
-            "unit": self.unit,
-            "out": None if self.path is None else str(self.path),
-            "notes": self.notes,
-        }
-
-    def about(self) -> About:
-        """The first and last of the points, or where they were written."""
-        where = "in memory" if self.path is None else f"in {self.path}"
-        tables = []
-        if self.table is not None:
-            texts = sum(dtype == pl.String for dtype in self.table.dtypes)
-            rows = [
-                ["–" if c is None else c if isinstance(c, str) else f"{c:.4f}" for c in r] for r in _ends(self.table)
-            ]
-            tables.append(Table(self.table.columns, rows, texts=texts))
-        return About(f"{self.rows} points {where}, {self.unit}: {', '.join(self.columns)}", {}, tables, self.notes)
-
-
-def _ends(table: pl.DataFrame) -> list[tuple[Any, ...]]:
-    """Rows that may be shown: all of a short table, of a long one the first and the last."""
-    few = table if len(table) <= 200 else pl.concat([table.head(100), table.tail(100)])
-    return few.rows()
 
 
 class How(TypedDict, total=False):
@@ -178,20 +131,52 @@ def measure(
         if is_frame(readings):
             return measure_frame(arm, readings, layout, one_probe(probe), angle, u_rad, one_number(temperature_c))
         return measure_array(arm, readings, probe, angle, u_rad, temperature_c, approach)
-    choices = (one_probe(probe), angle, units, u_rad, layout, one_number(temperature_c), covariance)
     path = None if out is None else Path(out)
-    write = None if path is None else writer_of(path)
-    job = MeasureJob(arm, Path(readings), *choices)
-    if path is None or write is None:
+    if path is not None:
+        writer_of(path)  # an ending that cannot be written is told before the work
+    given = (one_probe(probe), angle, units, u_rad, layout, one_number(temperature_c), covariance)
+    job = MeasureJob(arm, Path(readings), *given)
+    if path is None:
         table = pl.concat(list(job.frames(progress)))
         return Measurement(job.rows, job.columns, job.unit, None, table, job.notes)
-    refuse_inputs([path], [Path(readings), *([result_file(Path(arm))] if isinstance(arm, str | os.PathLike) else [])])
+    return measure_to_file(job, path, [Path(readings), *files_of(arm)], force, progress)
+
+
+def measure_to_file(
+    job: MeasureJob, path: Path, inputs: Sequence[Path], force: bool = False, progress: Progress | None = None
+) -> Measurement:
+    """The points in a file by its ending, whole or not at all. Raises UlnaInputError; KeyboardInterrupt."""
+    write = writer_of(path)
+    refuse_inputs([path], inputs)
     with new_file(path, force=force) as staged:
         try:
             write(job.frames(progress), staged)
         except TooManyRowsError as error:
             raise UlnaInputError(f"{path}: {error}") from None
     return Measurement(job.rows, job.columns, job.unit, path, None, job.notes)
+
+
+def measure_to_stream(job: MeasureJob, file: BinaryIO, json_lines: bool = False) -> Measurement:
+    """The points as CSV (or one JSON object a line) to an open file, such as stdout.
+
+    What went out cannot be taken back, so all readings of a file are checked before the first point is written. A table
+    that comes as it is made, from a pipe, cannot be: each piece of it is measured, written and flushed as it comes.
+    """
+    if not job.coming:
+        job.check()
+    for number, frame in enumerate(job.frames()):
+        # as text, so that a reader who has gone away is noticed as Python notices it
+        text = frame.write_ndjson() if json_lines else frame.write_csv(include_header=number == 0)
+        file.write(text.encode())
+        if job.coming:
+            file.flush()
+    file.flush()
+    return Measurement(job.rows, job.columns, job.unit, notes=job.notes)
+
+
+def files_of(arm: ArmLike) -> list[Path]:
+    """Those that an arm is read from."""
+    return [result_file(Path(arm))] if isinstance(arm, str | os.PathLike) else []
 
 
 def each_encoder(arm: ArmLike, encoder_u_rad: ArrayLike | None) -> F64 | None:
@@ -228,36 +213,3 @@ def one_number(temperature_c: ArrayLike | None) -> float | None:
     if temperature_c is None or np.ndim(temperature_c) == 0:
         return None if temperature_c is None else float(np.asarray(temperature_c))
     raise wrong_type(temperature_c, "one temperature_c: of a table, each row's stands in the column 'temperature'")
-
-
-def measure_to_stream(
-    arm: ArmLike,
-    readings: str | Path | Header,
-    probe: str | None,
-    file: BinaryIO,
-    *,
-    json_lines: bool = False,
-    angle: str = "rad",
-    units: str = "mm",
-    layout: Layout = AS_EXPECTED,
-    temperature_c: float | None = None,
-    covariance: bool = False,
-) -> Measurement:
-    """The same, written as CSV (or one JSON object a line) to an open file, such as stdout.
-
-    What went out cannot be taken back, so all readings of a file are checked before the first point is written. A table
-    that comes as it is made, from a pipe, cannot be: each piece of it is measured, written and flushed as it comes.
-    """
-    coming = isinstance(readings, Header)
-    table = readings if isinstance(readings, Header) else Path(readings)
-    job = MeasureJob(arm, table, probe, angle, units, layout=layout, temperature_c=temperature_c, covariance=covariance)
-    if not coming:
-        job.check()
-    for number, frame in enumerate(job.frames()):
-        # as text, so that a reader who has gone away is noticed as Python notices it
-        text = frame.write_ndjson() if json_lines else frame.write_csv(include_header=number == 0)
-        file.write(text.encode())
-        if coming:
-            file.flush()
-    file.flush()
-    return Measurement(job.rows, job.columns, job.unit, notes=job.notes)

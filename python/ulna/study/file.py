@@ -61,10 +61,15 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     return study
 
 
+def study_file(path: Path) -> StudyFile:
+    """The file alone, nothing that it names. Raises UlnaInputError."""
+    return fill(StudyFile, _document(path)[0], path)
+
+
 def rows_to_judge(path: Path) -> Rows:
     """The rows with which an arm is judged where nobody says otherwise: those to check where the study has a split,
     else all. Raises UlnaInputError."""
-    file = fill(StudyFile, _document(path)[0], path)
+    file = study_file(path)
     return "check" if any(entry.split is not None for entry in file.readings) else "all"
 
 
