@@ -84,6 +84,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     table, columns = _with_own_units(table, arm, dict(layout.columns))
     entry |= {"columns": columns} if columns else {}
     header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True))
+    _check_angles(header, arm)
     entry["angle"] = entry.get("angle") or asked.angle or _angle(header, arm)
     length_unit = _length_unit(header, asked.length_unit)
     source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, table)
@@ -116,6 +117,16 @@ def _with_own_units(table: FrameTable, arm: Arm, columns: dict[str, str]) -> tup
         if stem in known and stem not in table.columns and columns.get(stem, name) == name:
             columns[stem], units[name] = name, match[2]
     return table.with_units(units), columns
+
+
+def _check_angles(header: Header, arm: Arm) -> None:
+    """Raises UlnaInputError where no column at all is an angle: some are most likely called otherwise."""
+    if not any(re.fullmatch("q[0-9]+", column) for column in header.columns):
+        shown = ", ".join(map(header.own, header.columns))
+        raise UlnaInputError(
+            f"{FRAME}: there are no columns q1 … q{arm.n} ({shown[:80]}); expected the encoder angles of arm "
+            f"'{arm.name}'. Say which they are, columns = {{'q1': NAME, …}}, or have them recognised, guess = True."
+        )
 
 
 def _angle(header: Header, arm: Arm) -> str:
