@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 
+from ulna.formats.output import UNDER_WAY
 from ulna.ground.errors import UlnaInputError
 
 MOST_SHEET_ROWS = 1_048_576
@@ -59,13 +60,31 @@ def write_parquet(frames: Iterator[pl.DataFrame], path: Path) -> None:
 
 
 def write_workbook(frames: Iterator[pl.DataFrame], path: Path) -> None:
-    """One sheet "points", numbers as numbers, names as text. Raises TooManyRowsError for more than a sheet has."""
+    """One sheet "points", numbers as numbers (with 16 digits), names as text. Raises TooManyRowsError for more than a
+    sheet has."""
     import openpyxl
-    from openpyxl.cell import WriteOnlyCell
 
     book = openpyxl.Workbook(write_only=True)
     sheet = book.create_sheet("points")
     sheet.freeze_panes = "A2"
+    sheet._get_writer()  # opens the file in which the library keeps rows until the book is whole
+    kept = Path(sheet._writer.out)
+    UNDER_WAY.add(kept)
+    try:
+        _fill(sheet, frames)
+        book.save(path)
+    except BaseException:
+        with suppress(Exception):
+            sheet.close()
+        kept.unlink(missing_ok=True)
+        raise
+    finally:
+        UNDER_WAY.discard(kept)
+
+
+def _fill(sheet: Any, frames: Iterator[pl.DataFrame]) -> None:
+    from openpyxl.cell import WriteOnlyCell
+
     rows = 0
     for frame in frames:
         if not rows:
@@ -79,10 +98,8 @@ def write_workbook(frames: Iterator[pl.DataFrame], path: Path) -> None:
             )
         texts = [dtype == pl.String for dtype in frame.dtypes]
         for row in frame.iter_rows():
-            sheet.append(
-                [_text(WriteOnlyCell(sheet, cell)) if text else cell for cell, text in zip(row, texts, strict=True)]
-            )
-    book.save(path)
+            cells = zip(row, texts, strict=True)
+            sheet.append([_text(WriteOnlyCell(sheet, cell)) if text else cell for cell, text in cells])
 
 
 def _text(cell: Any) -> Any:
