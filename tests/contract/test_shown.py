@@ -87,6 +87,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[type, Any]:
 def fewer(folder: Path, name: str, changed: str) -> Path:
     """A file of the example with other numbers, so that it takes no time."""
     text = (PLATINUM / name).read_text().partition("[plan]")[0]
+    text = text.replace("[travel]", "points = 400\nbars = 100\n\n[travel]") if name == "volume.toml" else text
     path = folder / name
     path.write_text(text + changed)
     return path
