@@ -39,7 +39,7 @@ def measure(
     ] = None,
     like_readings: Annotated[
         int | None,
-        typer.Option("--like-readings", metavar="N", help="As which of its [[readings]], where they differ."),
+        typer.Option("--like-readings", metavar="N", help="As which of its readings (1, 2, …), where they differ."),
     ] = None,
     angle: Annotated[
         str | None, typer.Option("--angle", help="Of the readings: rad (usual), deg or counts.", show_default=False)

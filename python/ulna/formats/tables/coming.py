@@ -141,7 +141,7 @@ class ComingTable(Header):
         blank: int | None = None
         while lines := self.lines.some():
             self.place.clear()
-            kept: list[list[str]] = []
+            kept: list[tuple[list[float], list[str]]] = []
             error: UlnaInputError | None = None
             for line, text in lines:
                 if not text.strip():
@@ -167,8 +167,8 @@ class ComingTable(Header):
 
     def _checked(
         self, text: str, row: int, numbers: Sequence[str], texts: Sequence[str], above: dict[str, str]
-    ) -> list[str]:
-        """The cells of a line, those of `numbers` first. Raises UlnaInputError for a bad one."""
+    ) -> tuple[list[float], list[str]]:
+        """The numbers and the names of a line. Raises UlnaInputError for a bad cell."""
         cells = cells_of(text, self.separator)
         if len(cells) != len(self.columns):
             named = self.layout.header is not False
@@ -180,16 +180,18 @@ class ComingTable(Header):
                 by_name[name] = last
             above[name] = by_name[name]
         number = self.layout.spelling.number
+        values, labels = [], []
         for name in numbers:
             value = number(by_name[name])
             if value is None or value - value != 0.0:
                 raise UlnaInputError(self._bad(row, name, by_name[name], numbers))
+            values.append(value)
         for name in texts:
             cell = by_name[name].strip()
             if not cell:
                 raise UlnaInputError(self._bad(row, name, cell, numbers))
-            by_name[name] = self.labels.get(name, {}).get(cell, cell)
-        return [by_name[name] for name in (*numbers, *texts)]
+            labels.append(self.labels.get(name, {}).get(cell, cell))
+        return values, labels
 
     def _filled_down(self) -> list[str]:
         """The columns whose gaps mean the cell above. Raises UlnaInputError for a name of nothing."""
@@ -208,11 +210,12 @@ class ComingTable(Header):
         first = row == 1 and self.layout.header is False
         return text_cell(self, row, name, cell, lambda column: column in numbers, self.layout, first)
 
-    def _piece(self, rows: list[list[str]], numbers: Sequence[str], texts: Sequence[str], before: int) -> Piece:
-        number, count = self.layout.spelling.number, len(numbers)
-        values = np.array([[number(cell) for cell in row[:count]] for row in rows], dtype=np.float64)
-        named = {name: pl.Series(name, [row[count + k] for row in rows]) for k, name in enumerate(texts)}
-        return Piece(before, values.reshape(len(rows), count), named)
+    def _piece(
+        self, rows: list[tuple[list[float], list[str]]], numbers: Sequence[str], texts: Sequence[str], before: int
+    ) -> Piece:
+        values = np.array([own for own, _ in rows], dtype=np.float64).reshape(len(rows), len(numbers))
+        named = {name: pl.Series(name, [labels[k] for _, labels in rows]) for k, name in enumerate(texts)}
+        return Piece(before, values, named)
 
 
 def cells_of(text: str, separator: str) -> list[str]:
