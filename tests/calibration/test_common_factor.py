@@ -41,7 +41,7 @@ def test_the_factor_is_found_and_what_no_drawing_could_be_off_by_is_not_believed
     problem = core_problem(truth, [_scaled(truth, rng, factor)[kind]()])
     found = _core.fit(problem, np.zeros(len(problem.parameter_names), bool), search_starts=0)
     assert found.common_factor is not None or not found.converged
-    if found.common_factor is not None and 0.4 < factor:
+    if found.common_factor is not None and factor > 0.4:
         assert found.common_factor == pytest.approx(factor, rel=1e-3)
     assert found.converged == (0.5 <= factor <= 2.0)
 

@@ -13,7 +13,7 @@ import ulna._core as _core
 from ulna.calibration.placements import Figures
 from ulna.study.data import Loss, Method
 
-Unit = Literal["rad", "mm", "1/K", "rad/(N m)"]
+Unit = Literal["rad", "mm", "1/K", "rad/(N m)", "1"]
 Status = Literal["fitted", "held", "not-determined"]
 
 

@@ -45,8 +45,7 @@ pub(super) fn common_factor(
 ) -> Option<CommonFactor> {
     let units = problem.parameter_units();
     let is_length = |j: &usize| *j < problem.arm().geometry_count() && units[*j] == Unit::Mm;
-    let lengths: Vec<(f64, f64)> =
-        determined.iter().copied().filter(is_length).map(|j| (drawn[j], found[j])).collect();
+    let lengths: Vec<(f64, f64)> = determined.iter().copied().filter(is_length).map(|j| (drawn[j], found[j])).collect();
     let longest = lengths.iter().fold(0.0, |most: f64, (a, _)| most.max(a.abs()));
     let telling: Vec<(f64, f64)> = lengths.into_iter().filter(|(a, _)| a.abs() > SHORT * longest).collect();
     if telling.len() < FEWEST {

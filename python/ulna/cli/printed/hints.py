@@ -33,8 +33,8 @@ def where_to_look(result: Result) -> str:
         hints.append(_if_that_is_its_noise(result.fit))
     if result.fit.termination == "off-scale":
         hints.append(
-            "Correct the size or the arm file and calibrate again; if its lengths are only guesses, say how far off they "
-            "may be: [fit] known_length."
+            "Correct the size or the arm file and calibrate again; if its lengths are only guesses, say how far off "
+            "they may be: [fit] known_length."
         )
     hints += [said for said in [beyond_reach(result)] if said]
     worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)

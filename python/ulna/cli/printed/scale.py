@@ -28,7 +28,8 @@ def common_factor(result: Result) -> str:
     stated = f"of artefact {', '.join(repr(name) for name in names)}" if len(names) <= _MOST else "of the artefacts"
     return (
         f"Every length of the arm came out {times(factor)} than in the arm file: is the size that is stated {stated} "
-        f"right, and are the lengths in the arm file?{_taken_for(factor)} Readings of lengths cannot tell: they fit either way."
+        f"right, and are the lengths in the arm file?{_taken_for(factor)} Readings of lengths cannot tell: they fit "
+        "either way."
     )
 
 
