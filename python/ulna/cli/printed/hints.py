@@ -7,6 +7,7 @@ import polars as pl
 
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary
+from ulna.calibration.suspects import Suspicion
 from ulna.cli.printed.scale import beyond_reach
 from ulna.ground.digits import figure_mm
 
@@ -16,8 +17,8 @@ _ALIKE = 4.0
 _FEWEST = 8
 
 
-def where_to_look(result: Result) -> str:
-    """The reading that fits worst, and what the ending or the rows suggest."""
+def where_to_look(result: Result, suspected: Suspicion | None = None) -> str:
+    """The reading that fits worst, and what the ending or the rows suggest; suspected: what would explain them."""
     residuals = result.residuals
     if not len(residuals):
         return ""
@@ -29,7 +30,9 @@ def where_to_look(result: Result) -> str:
         )
     moved = _taken_as_one_standing(residuals)
     wrong_size = result.fit.common_factor is not None or bool(beyond_reach(result))
-    if result.fit.termination == "poor-minimum" and not moved and not wrong_size:
+    if suspected is not None:
+        hints.append(f"They are met to {figure_mm(suspected.rms_mm)} mm, rms, {suspected.if_so}. {suspected.to_do}")
+    if result.fit.termination == "poor-minimum" and not moved and not wrong_size and suspected is None:
         hints.append(_if_that_is_its_noise(result.fit))
     if result.fit.termination == "off-scale":
         hints.append(
