@@ -245,7 +245,8 @@ impl Arm {
     /// Sum of the lengths of all links and the tip, mm: nothing is farther from the base.
     pub fn reach_mm(&self, probe: usize) -> f64 {
         let links: f64 = self.joints.iter().map(|j| j.a_mm.hypot(j.d_mm)).sum();
-        links + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
+        let beside = self.effects.base_offset.as_ref().map_or(0.0, |base| base.mm[0].hypot(base.mm[1]));
+        beside + links + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
     }
 }
 

@@ -1,7 +1,7 @@
 //! An arm's geometry, and what it does beyond it, as the kernels use them.
 
 use super::carried::Carried;
-use crate::arm::effects::{Compliance, Expansion, FromStated};
+use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Effects, JointModel};
 
 /// One joint's numbers as the kernels use them.
@@ -32,6 +32,8 @@ pub struct Chain {
     pub(super) columns: EffectColumns,
     /// what the arm carries, if that bends it
     pub(super) carried: Option<Carried>,
+    /// where its first axis stands, if not at z of the base frame
+    pub(super) base: Option<Base>,
 }
 
 /// Where the derivatives of effects stand, counted from those of the first.
@@ -43,6 +45,8 @@ pub(super) struct EffectColumns {
     pub(super) on_encoders: usize,
     pub(super) expansion: usize,
     pub(super) compliance: usize,
+    pub(super) base_tilt: usize,
+    pub(super) base_offset: usize,
     count: usize,
 }
 
@@ -60,6 +64,8 @@ impl EffectColumns {
             on_encoders: first,
             expansion: effects.start_of(Expansion::KIND),
             compliance: effects.start_of(Compliance::KIND),
+            base_tilt: effects.start_of(BaseTilt::KIND),
+            base_offset: effects.start_of(BaseOffset::KIND),
             count: effects.count(),
         }
     }
@@ -103,6 +109,7 @@ impl Chain {
             effects: arm.effects().clone(),
             columns: EffectColumns::new(arm.effects(), arm.encoders()),
             carried: arm.effects().compliance.as_ref().map(Carried::new),
+            base: Base::of(arm.effects().base_tilt.as_ref(), arm.effects().base_offset.as_ref()),
         }
     }
 
@@ -119,6 +126,7 @@ impl Chain {
             }
         }
         self.effects.set(effects);
+        self.base = Base::of(self.effects.base_tilt.as_ref(), self.effects.base_offset.as_ref());
     }
 
     /// Number of encoders.

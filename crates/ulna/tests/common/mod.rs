@@ -5,7 +5,10 @@ pub mod cases;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Backlash, Body, Compliance, Coupling, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::arm::{
+    Arm, Backlash, BaseOffset, BaseTilt, Body, Compliance, Coupling, Effects, Expansion, Harmonics, Joint, JointModel,
+    Probe,
+};
 use ulna::artefacts::Noise;
 use ulna::kinematics::{Angles, Conditions, tip_mm};
 
@@ -64,6 +67,8 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
             bodies: (0..n).map(|_| body(&mut small)).collect(),
             gravity: [small(1.0), small(1.0), -1.5],
         }),
+        base_tilt: Some(BaseTilt { rad: [small(1.0), small(1.0)], joints: n }),
+        base_offset: Some(BaseOffset { mm: [small(50.0), small(50.0)], joints: n }),
     }
 }
 

@@ -1,6 +1,7 @@
 //! All effects: one row each.
 
 use super::backlash::Backlash;
+use super::base::{BaseOffset, BaseTilt};
 use super::compliance::Compliance;
 use super::coupling::Coupling;
 use super::effect::{Effect, FromStated};
@@ -104,6 +105,10 @@ registry! {
         expansion: Expansion,
         /// Joints that bend under gravity.
         compliance: Compliance,
+        /// The first axis leans in the stated frame.
+        base_tilt: BaseTilt,
+        /// And stands beside its origin.
+        base_offset: BaseOffset,
     }
 }
 

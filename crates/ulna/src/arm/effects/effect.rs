@@ -37,6 +37,12 @@ pub trait Effect: Debug + Send + Sync {
         true
     }
 
+    /// Whether it says where the arm stands and nothing of the arm: readings that see the arm from nowhere but itself do not
+    /// see it.
+    fn of_base(&self) -> bool {
+        false
+    }
+
     /// What is not a parameter makes sense.
     ///
     /// # Errors
