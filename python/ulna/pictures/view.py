@@ -23,6 +23,10 @@ NAME_PX = 4.0
 """Names stand so far above their points."""
 #: what covers what: later ones lie on earlier ones
 ORDER = ("floor", "arm", "over", "word")
+#: kinds that are never hidden
+ON_TOP = {"word": "word", "ball": "over"}
+FILLED = 0.54
+"""Of the shorter side of the picture: the distance from the middle of an arm to its farthest part."""
 Marks = list["Mark"]
 
 
@@ -81,15 +85,15 @@ def marks(scene: Scene, q_rad: F64, view: View) -> Marks:
 
 def layer(shape: Shape) -> str:
     """Frames, axes and dimensions lie on the arm, as if it were of glass."""
-    if shape.kind == "word":
-        return "word"
+    if shape.kind in ON_TOP:
+        return ON_TOP[shape.kind]
     return shape.group if shape.group in ORDER else "over"
 
 
 def around(scene: Scene, q_rad: F64, width_px: float, height_px: float) -> View:
     """The arm in the middle, as large as leaves room when it is turned."""
     middle, radius = scene.extent(q_rad)
-    scale = 0.47 * min(width_px, height_px) / radius
+    scale = FILLED * min(width_px, height_px) / radius
     return View(AZIMUTH_RAD, ELEVATION_RAD, middle, scale, width_px, height_px)
 
 

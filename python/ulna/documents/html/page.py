@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -12,7 +10,7 @@ from markupsafe import Markup
 from ulna.documents.content.content import Content
 from ulna.documents.html.blocks import Legend, asset, cloud_legend, environment, macro_of
 from ulna.documents.html.drawings import draw
-from ulna.documents.html.markup import json_in_script
+from ulna.documents.html.markup import digest, json_in_script
 from ulna.documents.html.plots import Plot
 from ulna.documents.languages.words import Words
 from ulna.documents.sections import artefacts as touched
@@ -62,7 +60,7 @@ def render(content: Content, language: str = "en") -> str:
         words=words,
         arm=content.arm,
         made=content.provenance,
-        policy=POLICY.format(scripts=" ".join(f"'sha256-{_digest(script)}'" for script in scripts)),
+        policy=POLICY.format(scripts=" ".join(f"'sha256-{digest(script)}'" for script in scripts)),
         style=Markup(asset("style.css")),
         sections={key: found for key, found in _sections(content, words).items() if found},
         set=lambda block: getattr(macros, macro_of(block))(block),
@@ -144,8 +142,3 @@ def _plotly() -> str:
 
     source: str = get_plotlyjs()
     return source.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def _digest(script: str) -> str:
-    """As a Content-Security-Policy knows a script: base64 of its SHA-256."""
-    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
