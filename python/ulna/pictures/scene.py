@@ -35,7 +35,8 @@ class Scene:
         """(3,) in the base frame: of links and axes alone, without effects beyond geometry."""
         after = constant_transforms(self.arm)[-1]
         tip_mm = self.arm.probes[self.probe].tip_mm
-        return at(bodies(self.arm, q_rad)[-1] @ after, tip_mm)[0]
+        found: F64 = at(bodies(self.arm, q_rad)[-1] @ after, tip_mm)[0]
+        return found
 
     def extent(self, q_rad: F64) -> tuple[F64, float]:
         """Middle (3,) of the arm in a pose, and how far its farthest part is from there, mm."""
@@ -91,4 +92,6 @@ def round_step(about: float) -> float:
 
 def _base(unit_mm: float) -> Iterator[Shape]:
     """A foot under axis 1."""
-    yield Shape("solid", 0, "arm", "foot", tube([0.0, 0.0, -5.0 * unit_mm], [0.0, 0.0, -3.4 * unit_mm], 5.0 * unit_mm, 24))
+    yield Shape(
+        "solid", 0, "arm", "foot", tube([0.0, 0.0, -5.0 * unit_mm], [0.0, 0.0, -3.4 * unit_mm], 5.0 * unit_mm, 24)
+    )

@@ -1,6 +1,6 @@
 """A scene in a pose, seen from somewhere in parallel projection: flat marks in the order in which they are painted.
 
-The page of `ulna show` does the same in its own script (`ulna.documents.arm_page`), and a test holds them to each other.
+The page of `ulna show` does the same in its script (`ulna.documents.arm_page`), and a test holds them to each other.
 """
 
 from __future__ import annotations
@@ -97,9 +97,7 @@ def around(scene: Scene, q_rad: F64, width_px: float, height_px: float) -> View:
     return View(AZIMUTH_RAD, ELEVATION_RAD, middle, scale, width_px, height_px)
 
 
-def fitted(
-    scene: Scene, q_rad: F64, width_px: float, most_px: float, azimuth_rad: float, elevation_rad: float
-) -> View:
+def fitted(scene: Scene, q_rad: F64, width_px: float, most_px: float, azimuth_rad: float, elevation_rad: float) -> View:
     """As large as the width allows, as high as the arm then needs, `most_px` at the most."""
     view = View(azimuth_rad, elevation_rad, np.zeros(3), 1.0, 0.0, 0.0)
     stand = bodies(scene.arm, q_rad)

@@ -1,7 +1,7 @@
 """The chain as bodies that turn: constant transforms between joints, and a turn about z at each joint.
 
-`T_i = Rz(sign_i q_i - theta0_i) · Tz(d_i) · Tx(a_i) · Rx(alpha_i) · Ry(beta_i)` is `Rz(sign_i q_i)` and a transform that
-no encoder changes. So a reader of these transforms needs to know a turn about z and nothing else of the model.
+`T_i = Rz(sign_i q_i - theta0_i) · Tz(d_i) · Tx(a_i) · Rx(alpha_i) · Ry(beta_i)` is `Rz(sign_i q_i)` and a transform
+that no encoder changes. So a reader of these transforms needs to know a turn about z and nothing else of the model.
 """
 
 from __future__ import annotations

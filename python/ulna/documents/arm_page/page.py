@@ -1,4 +1,4 @@
-"""The page of an arm: a picture with a slider for each joint. What turns there is `map.js`; the rest comes from here."""
+"""The page of an arm: a picture with a slider for each joint. `map.js` turns them; all else comes from here."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from markupsafe import Markup
 from ulna.arm.arm import Arm
 from ulna.arm.frames.bodies import constant_transforms
 from ulna.arm.joint import Joint
+from ulna.documents.html.arm_plot import rules
 from ulna.documents.html.blocks import asset as report_asset
 from ulna.documents.html.blocks import environment
 from ulna.documents.html.markup import digest, json_in_script
@@ -21,7 +22,6 @@ from ulna.documents.languages.words import Words
 from ulna.ground.arrays import F64
 from ulna.ground.digits import fixed
 from ulna.ground.version import VERSION
-from ulna.pictures.looks import DARK, LIGHT, css, variables
 from ulna.pictures.scene import Scene
 from ulna.pictures.svg import picture
 from ulna.pictures.view import AZIMUTH_RAD, ELEVATION_RAD, around
@@ -63,8 +63,8 @@ class Row:
 
 
 def render(scene: Scene, start_rad: F64, language: str = "en") -> str:
-    """The page as text, to be written as UTF-8. The same arm gives the same text. start_rad: (n,) the pose that it opens
-    in."""
+    """The page as text, to be written as UTF-8. The same arm gives the same text. start_rad: (n,) the pose in which it
+    opens."""
     words, arm = Words(language), scene.arm
     scripts = [_asset(name) for name in SCRIPTS]
     say: Any = words
@@ -78,9 +78,12 @@ def render(scene: Scene, start_rad: F64, language: str = "en") -> str:
         probe=scene.probe,
         version=VERSION,
         policy=POLICY.format(scripts=" ".join(f"'sha256-{digest(script)}'" for script in scripts)),
-        style=Markup(report_asset("style.css") + _colours() + css() + _asset("style.css")),
+        style=Markup(report_asset("style.css") + rules() + _asset("style.css")),
         picture=still,
-        views=[(f"{azimuth:.6g} {elevation:.6g}", words(f"show.view-{name}")) for name, (azimuth, elevation) in VIEWS.items()],
+        views=[
+            (f"{azimuth:.6g} {elevation:.6g}", words(f"show.view-{name}"))
+            for name, (azimuth, elevation) in VIEWS.items()
+        ],
         boxes=[(each, words(f"show.box-{each}"), each in FIRST) for each in SHOWN],
         rows=[_row(k, joint, arm) for k, joint in enumerate(arm.joints, start=1)],
         hayati=any(joint.model == "hayati" for joint in arm.joints),
@@ -147,16 +150,6 @@ def _data(scene: Scene, start_rad: F64) -> dict[str, Any]:
             for s in scene.shapes
         ],
     }
-
-
-def _colours() -> str:
-    """Those of the picture, by the reader's light or dark."""
-    return (
-        f":root {{ {variables(LIGHT)} }}\n"
-        f'@media (prefers-color-scheme: dark) {{ :root:not([data-theme="light"]) {{ {variables(DARK)} }} }}\n'
-        f':root[data-theme="dark"] {{ {variables(DARK)} }}\n'
-        f'@media print {{ :root, :root[data-theme="dark"], :root:not([data-theme="light"]) {{ {variables(LIGHT)} }} }}\n'
-    )
 
 
 def _asset(file: str) -> str:

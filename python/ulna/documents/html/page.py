@@ -8,10 +8,11 @@ from typing import Any
 from markupsafe import Markup
 
 from ulna.documents.content.content import Content
+from ulna.documents.html.arm_plot import rules
 from ulna.documents.html.blocks import Legend, asset, cloud_legend, environment, macro_of
 from ulna.documents.html.drawings import draw
 from ulna.documents.html.markup import digest, json_in_script
-from ulna.documents.html.plots import Plot
+from ulna.documents.html.plots import Plot, Still
 from ulna.documents.languages.words import Words
 from ulna.documents.sections import artefacts as touched
 from ulna.documents.sections import (
@@ -61,7 +62,7 @@ def render(content: Content, language: str = "en") -> str:
         arm=content.arm,
         made=content.provenance,
         policy=POLICY.format(scripts=" ".join(f"'sha256-{digest(script)}'" for script in scripts)),
-        style=Markup(asset("style.css")),
+        style=Markup(asset("style.css") + rules()),
         sections={key: found for key, found in _sections(content, words).items() if found},
         set=lambda block: getattr(macros, macro_of(block))(block),
         plots_data=lambda: Markup(json_in_script([_data(plot) for plot in drawn])),
@@ -91,6 +92,7 @@ def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
         "reach": [*_clouds(over["reach"], words), *lacks("study", "temperature")],
         "poses": plots.poses(content),
         "space": [*plots.space(content), *lacks("study", "quiver")],
+        "arm": plots.arm(content, words),
         "parameters": parameters.parameters(content, words),
         "determined": determined.determined(content, words),
         "correlation": observability.correlation(content, words),
@@ -127,8 +129,10 @@ def _clouds(drawings: Sequence[blocks.Drawing], words: Words) -> Blocks:
     return [cloud_legend(words), blocks.Drawings(drawings, narrow=True)] if drawings else []
 
 
-def _drawn(plot: Plot, drawn: list[Plot]) -> Plot:
-    drawn.append(plot)
+def _drawn(plot: Plot | Still, drawn: list[Plot]) -> Plot | Still:
+    """What the script has to draw is kept."""
+    if isinstance(plot, Plot):
+        drawn.append(plot)
     return plot
 
 
