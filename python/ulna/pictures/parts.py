@@ -101,7 +101,7 @@ def dimensions(body: int, joint: Joint, unit_mm: float) -> Iterator[Shape]:
         if abs(angle_rad) > NOTHING_RAD:
             shown = math.remainder(angle_rad, 2.0 * math.pi)
             bent = arc(centre, start, about, shown, radius)
-            middle = arc(centre, start, about, shown / 2.0, 1.3 * radius)[-1:]
+            middle = arc(centre, start, about, shown / 2.0, 1.4 * radius)[-1:]
             line = np.array([centre, centre + 1.25 * radius * reference])
             yield Shape("line", body, "dimensions", "reference", line, body)
             yield Shape("line", body, "dimensions", "angle", bent, body)

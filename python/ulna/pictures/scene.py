@@ -44,11 +44,12 @@ class Scene:
         return extent([at(stand[s.body], s.points_mm) for s in self.shapes if s.group in ("arm", "axes", "frames")])
 
 
-def scene(arm: Arm, probe: str | None = None) -> Scene:
-    """The arm with a probe on; None: its first. Raises UlnaInputError for a probe that it has not."""
+def scene(arm: Arm, probe: str | None = None, thickness: float = 0.01) -> Scene:
+    """The arm with a probe on; None: its first. thickness: of joints, arrows and the like, as a share of the reach.
+    Raises UlnaInputError for a probe that it has not."""
     name = next(iter(arm.probes)) if probe is None else list(arm.probes)[arm.probe_index(probe)]
     reach_mm = max(arm.core.reach_mm(arm.probe_index(name)), 1.0)
-    unit_mm = reach_mm / 100.0
+    unit_mm = thickness * reach_mm
     step_mm = round_step(reach_mm / 7.0)
     found = [*floor(step_mm, reach_mm), *_base(unit_mm)]
     constant = constant_transforms(arm)

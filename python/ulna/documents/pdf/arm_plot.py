@@ -11,7 +11,6 @@ from matplotlib.patches import Circle, Polygon
 
 from ulna.documents.content.standing import StandingArm
 from ulna.documents.pdf.canvas import INCH_MM, WIDTH_MM, svg_of
-from ulna.documents.pdf.text import clean
 from ulna.pictures.looks import LIGHT, LOOKS, Look
 from ulna.pictures.svg import scale_bar
 from ulna.pictures.view import AZIMUTH_RAD, ELEVATION_RAD, NAME_PX, Mark, fitted, marks
@@ -61,3 +60,8 @@ def _draw(axes: Axes, mark: Mark, look: Look, order: int) -> None:
     else:
         edge: Any = stroke if stroke is not None else "none"
         axes.add_patch(Polygon(mark.points_px, facecolor=fill, edgecolor=edge, lw=width, zorder=order + 2))
+
+
+def _plain(name: str) -> str:
+    """A name that can be drawn letter by letter; of any other its number, which is in the table of joints too."""
+    return name if name.isascii() and name.isprintable() else name[: len(name) - len(name.lstrip("0123456789"))]
