@@ -1,5 +1,5 @@
-"""Pictures of arms that the docs show, as SVG: `python tools/docs_arm_pictures.py`. The page of `ulna show` as a browser
-shows it, `show.png`, is made too where Chromium is at hand.
+"""Pictures of arms that the docs show, as SVG: `python tools/docs_arm_pictures.py`. The page of `ulna show` as a
+browser shows it, `show.png`, is made too where Chromium is at hand.
 
 A test compares the SVGs with what is drawn today. They follow the reader's light or dark.
 """

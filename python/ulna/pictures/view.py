@@ -91,7 +91,7 @@ def layer(shape: Shape) -> str:
 
 
 def around(scene: Scene, q_rad: F64, width_px: float, height_px: float) -> View:
-    """The arm in the middle, as large as leaves room when it is turned."""
+    """The arm in the middle, as large as it may be to be turned about: some of it may then touch the edge."""
     middle, radius = scene.extent(q_rad)
     scale = FILLED * min(width_px, height_px) / radius
     return View(AZIMUTH_RAD, ELEVATION_RAD, middle, scale, width_px, height_px)

@@ -47,7 +47,7 @@ def _draw(axes: Axes, mark: Mark, look: Look, order: int) -> None:
         halo = [patheffects.withStroke(linewidth=3.0 * POINTS_PER_PX, foreground=LIGHT["paper"])]
         style: Any = {"fontsize": look.size * POINTS_PER_PX, "fontweight": "bold" if look.bold else "normal"}
         axes.text(
-            x[0], y[0] - NAME_PX, clean(mark.text), color=fill, ha="center", va="baseline", zorder=order + 2,
+            x[0], y[0] - NAME_PX, _plain(mark.text), color=fill, ha="center", va="baseline", zorder=order + 2,
             clip_on=True, path_effects=halo, parse_math=False, **style,
         )  # fmt: skip
     elif mark.form == "line":
