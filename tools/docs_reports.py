@@ -1,4 +1,4 @@
-"""The reports and pages that the documentation links to, made while it is built: a hook of MkDocs. They are not committed."""
+"""The reports and pages that the documentation links to, made while it is built by a hook of MkDocs; not committed."""
 
 import sys
 from pathlib import Path

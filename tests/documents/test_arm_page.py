@@ -139,7 +139,8 @@ svg.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
 requestAnimationFrame(() => requestAnimationFrame(() => {
   document.title = JSON.stringify({
     joints: Array.from(new Set(shown.map(each => each.dataset.joint))), frames, mirrored, zero,
-    start: document.getElementById("pose").textContent, turned: before !== svg.querySelector(".foot").getAttribute("d")
+    start: document.getElementById("pose").textContent, focus: svg.tabIndex,
+    turned: before !== svg.querySelector(".foot").getAttribute("d")
   });
 }));
 """
@@ -155,6 +156,7 @@ def test_rows_boxes_buttons_and_keys_do_what_they_say(tmp_path: Path) -> None:
         "mirrored": "-10,20,-30.5,0",
         "zero": "0,0,0,0",
         "start": "10,-20,30.5,0",
+        "focus": 0,
         "turned": True,
     }
 

@@ -163,6 +163,7 @@
   ["pointerup", "pointercancel"].forEach(function (kind) {
     svg.addEventListener(kind, function (event) { held.delete(event.pointerId); });
   });
+  svg.setAttribute("tabindex", "0");
   svg.addEventListener("contextmenu", function (event) { event.preventDefault(); });
   svg.addEventListener("wheel", function (event) {
     event.preventDefault();
