@@ -15,7 +15,7 @@ pub use articulated::Arm;
 #[cfg(test)]
 pub(crate) use articulated::samples;
 pub use effects::{
-    Array, Backlash, Body, Compliance, Effect, Effects, Expansion, Harmonics, Lost, Seen, Stated, Unseen,
+    Array, Backlash, Body, Compliance, Coupling, Effect, Effects, Expansion, Harmonics, Lost, Seen, Stated, Unseen,
 };
 pub use joint::{Joint, JointModel};
 pub use probe::Probe;

@@ -132,7 +132,7 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     let mut at = arm.geometry_count();
     for effect in effects.on_encoder() {
         for (i, sign) in arm.signs().enumerate() {
-            for shape in effect.shapes(posed.pose.encoder(i)) {
+            for shape in effect.shapes(i, posed.pose.encoder(i)) {
                 jacobian.set_column(at, &(posed.by_turn(i) * sign * shape));
                 at += 1;
             }
@@ -157,12 +157,19 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
 /// ∂p/∂q of one pose, 3 × n, mm/rad.
 pub fn encoder_jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matrix3xX<f64> {
     let posed = Posed::new(arm, probe, pose.into());
-    let columns = arm.signs().enumerate().map(|(i, sign)| {
+    // a moment follows the turn that the encoder says, without what is added to it
+    let given = |i: usize| posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
+    let signs: Vec<f64> = arm.signs().collect();
+    let columns = signs.iter().enumerate().map(|(i, &sign)| {
         let slope = arm.effects().slope(i, posed.pose.encoder(i));
-        let given = posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
-        sign * (posed.by_turn(i) * (1.0 + slope) + given)
+        sign * (posed.by_turn(i) * (1.0 + slope) + given(i))
     });
-    Matrix3xX::from_columns(&columns.collect::<Vec<_>>())
+    let mut jacobian = Matrix3xX::from_columns(&columns.collect::<Vec<_>>());
+    for (joint, other, ratio) in arm.effects().coupling.iter().flat_map(|coupling| coupling.pairs()) {
+        let with = jacobian.column(other) + posed.by_turn(joint) * (signs[joint] * ratio);
+        jacobian.set_column(other, &with);
+    }
+    jacobian
 }
 
 /// What the arm carries, at turns that its weight has not changed yet.

@@ -1,7 +1,7 @@
 //! What an arm does beyond its geometry, one file for each cause. All are off until an arm has them.
 //!
 //! ```text
-//! turn_i = sign_i (q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i + b_i/2 · s_i) - theta0_i + κ_i M_i
+//! turn_i = sign_i (q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i + b_i/2 · s_i + Σ_k r_ik q_k) - theta0_i + κ_i M_i
 //! a_i, d_i, tip → (1 + ε_i (T_i - 20 °C)) a_i, d_i, tip
 //! ```
 //!
@@ -12,6 +12,7 @@
 mod all;
 mod backlash;
 mod compliance;
+mod coupling;
 mod effect;
 mod expansion;
 mod harmonics;
@@ -22,6 +23,7 @@ mod stated;
 pub use all::Effects;
 pub use backlash::Backlash;
 pub use compliance::{Body, Compliance};
+pub use coupling::Coupling;
 pub use effect::{Effect, FromStated};
 pub use expansion::Expansion;
 pub use harmonics::Harmonics;

@@ -134,7 +134,7 @@ impl WithSimd for TipsOp<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, samples};
+    use crate::arm::{Arm, Backlash, Body, Compliance, Coupling, Effects, Expansion, Harmonics, samples};
     use crate::kinematics::conditions::Conditions;
     use crate::kinematics::plain::{jacobian, tip_mm};
 
@@ -180,6 +180,10 @@ mod tests {
         let effects = Effects {
             harmonics: Some(harmonics),
             backlash: Some(Backlash { rad: (0..7).map(wave).collect() }),
+            coupling: Some(Coupling {
+                others: vec![vec![], vec![], vec![1], vec![], vec![3], vec![3, 4], vec![]],
+                ratios: vec![1.0, -0.02, 0.9, -1.1],
+            }),
             expansion: Some(Expansion { per_kelvin: (0..7).map(|i| 0.1 * wave(i)).collect() }),
             compliance: Some(Compliance { rad_per_nm, bodies, gravity: [0.1, 0.2, -1.0] }),
         };
