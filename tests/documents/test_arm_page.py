@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.browser import dom, node
-from tests.pictures.arms import arms, random_arm
+from tests.pictures.arms import arms, coupled, random_arm
 from tests.reports import HOSTILE
 
 from ulna.arm.arm import Arm
@@ -42,7 +42,7 @@ def opened(arm: Arm, language: str = "en") -> str:
 # what the page says of an arm is the core's
 
 
-@pytest.mark.parametrize("arm", arms(), ids=lambda arm: f"{arm.n} joints, full {arm.full_last_link}")
+@pytest.mark.parametrize("arm", arms(), ids=lambda arm: f"{arm.name}, {arm.n} joints, full {arm.full_last_link}")
 def test_the_map_in_the_page_is_the_cores(arm: Arm, tmp_path: Path) -> None:
     """The page's own script and numbers, in an engine of JavaScript."""
     poses = np.random.default_rng(arm.n).uniform(-6.0, 6.0, (50, arm.n))
@@ -51,7 +51,7 @@ def test_the_map_in_the_page_is_the_cores(arm: Arm, tmp_path: Path) -> None:
         script = f"""{MAP}
         const data = {json.dumps(data)}, poses = {json.dumps(poses.tolist())};
         console.log(JSON.stringify(poses.map(q => {{
-          const stand = ArmMap.bodies(data.before, data.sign, q);
+          const stand = ArmMap.bodies(data.before, data.turns, q);
           return ArmMap.at(stand[stand.length - 1], ...data.tip);
         }})));"""
         tips_mm = np.array(json.loads(node(script, tmp_path)))
@@ -70,7 +70,7 @@ document.title = JSON.stringify(found);
 """
 
 
-@pytest.mark.parametrize("number", [2, 5])
+@pytest.mark.parametrize("number", [2, 5, 8])
 def test_the_tip_that_a_reader_sees_is_the_cores(number: int, tmp_path: Path) -> None:
     """In a browser, by the fields for angles, to the last digit that they take."""
     arm = arms()[number]
@@ -222,6 +222,7 @@ def test_what_is_not_in_the_picture_is_said() -> None:
     assert "Not in the picture: backlash" in page
     assert "Nobody knows which way the encoders of these joints count: 1" in page
     assert page.count('class="missing"') == 3  # and the one for readers without scripts
+    assert "Not in the picture" not in opened(coupled(random_arm(9, 6))), "ratios of joints are in it"
 
 
 def test_without_scripts_the_picture_is_there() -> None:

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.effects.effects import Effects
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 
@@ -30,5 +31,14 @@ def random_arm(seed: int, joints: int, full: bool = False) -> Arm:
 
 
 def arms() -> list[Arm]:
-    """One of each kind: two to seven joints, with and without a full last link."""
-    return [random_arm(seed, joints, full) for seed, joints in enumerate((2, 3, 6, 7)) for full in (False, True)]
+    """One of each kind: two to seven joints, with and without a full last link, and one with coupled joints."""
+    found = [random_arm(seed, joints, full) for seed, joints in enumerate((2, 3, 6, 7)) for full in (False, True)]
+    return [*found, coupled(random_arm(9, 6))]
+
+
+def coupled(arm: Arm) -> Arm:
+    """Joint 3 turns with the second encoder too, as the elbow of a parallelogram does, joint 6 with two others."""
+    joints = list(arm.joints)
+    joints[2] = dataclasses.replace(joints[2], effects=Effects(coupled_to=(2,), coupling=(-1.0,)))
+    joints[5] = dataclasses.replace(joints[5], effects=Effects(coupled_to=(4, 5), coupling=(0.5, -0.02)))
+    return dataclasses.replace(arm, joints=tuple(joints))

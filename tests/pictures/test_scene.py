@@ -22,7 +22,7 @@ def of(drawn: Scene, role: str, joint: int) -> list[Shape]:
     return [shape for shape in drawn.shapes if shape.role == role and shape.joint == joint]
 
 
-@pytest.mark.parametrize("arm", arms(), ids=lambda arm: f"{arm.n} joints, full {arm.full_last_link}")
+@pytest.mark.parametrize("arm", arms(), ids=lambda arm: f"{arm.name}, {arm.n} joints, full {arm.full_last_link}")
 def test_the_tip_is_where_the_core_puts_it(arm: Arm) -> None:
     rng = np.random.default_rng(7)
     for name in arm.probes:

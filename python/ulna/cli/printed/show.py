@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from ulna.arm.frames.bodies import pictured
 from ulna.ground.arrays import F64
 from ulna.ground.digits import fixed
 from ulna.pictures.scene import Scene
@@ -22,8 +23,9 @@ def lines(target: Path, scene: Scene, q_rad: F64, remarks: Sequence[str]) -> Ite
     )
     if len(arm.probes) > 1:
         yield f"note: the arm has the probes {', '.join(arm.probes)}; choose one with --probe."
-    if arm.effects:
-        yield f"note: not in the picture: {', '.join(effect.words for effect in arm.effects)}."
+    unseen = [effect.words for effect in arm.effects if not pictured(effect, arm)]
+    if unseen:
+        yield f"note: not in the picture: {', '.join(unseen)}."
     unknown = [str(k) for k, joint in enumerate(arm.joints, start=1) if joint.sign == 0]
     if unknown:
         yield f"note: nobody knows which way joint {', '.join(unknown)} counts; drawn with sign = 1."

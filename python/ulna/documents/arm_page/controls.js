@@ -20,7 +20,7 @@
   var draw = ArmPicture.make(svg, shapes);
 
   function place() {
-    stand = ArmMap.bodies(data.before, data.sign, degrees.map(function (each) { return each * RAD; }));
+    stand = ArmMap.bodies(data.before, data.turns, degrees.map(function (each) { return each * RAD; }));
   }
 
   function later() {

@@ -25,12 +25,15 @@ var ArmMap = (function () {
     return [0, 4, 8].map(function (i) { return t[i] * x + t[i + 1] * y + t[i + 2] * z + t[i + 3]; });
   }
 
-  /* before: what stands before each joint, and behind the last; sign: of each encoder, 1 or -1; q: their angles, rad.
+  /* before: what stands before each joint, and behind the last; turns: how far each joint turns for a unit of each
+     encoder, a row for each joint; q: the encoders' angles, rad.
      The base itself, then each body that turns with joint 1, 2, …; last the frame in which the tip stands. */
-  function bodies(before, sign, q) {
+  function bodies(before, turns, q) {
     var found = [[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]];
     for (var k = 0; k < q.length; k += 1) {
-      found.push(turned(product(found[k], before[k]), sign[k] * q[k]));
+      var angle = 0;
+      for (var j = 0; j < q.length; j += 1) { angle += turns[k][j] * q[j]; }
+      found.push(turned(product(found[k], before[k]), angle));
     }
     found.push(product(found[q.length], before[q.length]));
     return found;

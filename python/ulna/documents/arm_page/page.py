@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ulna.arm.arm import Arm
-from ulna.arm.frames.bodies import constant_transforms
+from ulna.arm.frames.bodies import constant_transforms, pictured, turns
 from ulna.arm.joint import Joint
 from ulna.documents.html.arm_plot import rules
 from ulna.documents.html.blocks import asset as report_asset
@@ -125,8 +125,9 @@ def _limits_deg(joint: Joint) -> tuple[float, float]:
 def _notes(arm: Arm, words: Words) -> list[Text]:
     """What the picture cannot show of this arm."""
     found = []
-    if arm.effects:
-        extras = joined([words(f"extra.{effect.name}") for effect in arm.effects], ", ")
+    unseen = [effect for effect in arm.effects if not pictured(effect, arm)]
+    if unseen:
+        extras = joined([words(f"extra.{effect.name}") for effect in unseen], ", ")
         found.append(words("show.left-out", extras=extras))
     unknown = [str(k) for k, joint in enumerate(arm.joints, start=1) if joint.sign == 0]
     if unknown:
@@ -139,7 +140,7 @@ def _data(scene: Scene, start_rad: F64) -> dict[str, Any]:
     arm = scene.arm
     return {
         "before": [t[:3].ravel().tolist() for t in constant_transforms(arm)],
-        "sign": arm.signs.tolist(),
+        "turns": turns(arm).tolist(),
         "tip": arm.probes[scene.probe].tip_mm.tolist(),
         "start": np.degrees(start_rad).round(10).tolist(),
         "limits": [_limits_deg(joint) for joint in arm.joints],
