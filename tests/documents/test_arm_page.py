@@ -122,6 +122,7 @@ def _same(element: str, mark: Mark) -> bool:
 
 
 HOVER = """
+window.requestAnimationFrame = work => setTimeout(work, 0);  // nothing is shown here, so no frame is ever due
 document.querySelector('tr[data-joint="2"]').focus();
 const shown = Array.from(document.querySelectorAll(".arm .in-dimensions")).filter(
   each => getComputedStyle(each).display !== "none");
