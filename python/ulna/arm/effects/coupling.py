@@ -80,16 +80,20 @@ class Coupling(Effect):
 
     def for_core(self, joints: Sequence[CouplingOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
         """Pairs of joints, counted from 0, and the ratio of each."""
-        pairs = [
+        pairs = self.ratios(joints)
+        return {
+            "joints": np.array([pair[:2] for pair in pairs], dtype=np.float64).reshape(-1, 2),
+            "ratios": np.array([ratio for *_, ratio in pairs], dtype=np.float64),
+        }
+
+    def ratios(self, joints: Sequence[CouplingOfJoint]) -> list[tuple[int, int, float]]:
+        """All of it."""
+        return [
             (joint, other - 1, ratio)
             for joint, own in enumerate(joints)
             if own.coupling is not None
             for other, ratio in zip(own.coupled_to, own.coupling, strict=True)
         ]
-        return {
-            "joints": np.array([pair[:2] for pair in pairs], dtype=np.float64).reshape(-1, 2),
-            "ratios": np.array([ratio for *_, ratio in pairs], dtype=np.float64),
-        }
 
     def taken(self, own: CouplingOfJoint, values: Mapping[str, float]) -> dict[str, Any]:
         """One number for each joint that it is coupled to."""
