@@ -33,6 +33,16 @@ EXAMPLES: dict[str, list[Effects]] = {
         Effects(compliance_rad_per_nm=2e-6 * (k + 1), mass_kg=0.8, centre_mm=(0.0, 10.0, -60.0)) for k in range(7)
     ],
     "backlash": [Effects(backlash_rad=1e-4 + 2e-5 * k) for k in range(7)],
+    "coupling": [
+        Effects(coupled_to=coupled_to, coupling=ratios)
+        for coupled_to, ratios in [
+            *[((), None)] * 2,
+            ((2,), (-0.9,)),
+            *[((), None)] * 2,
+            ((2, 5), (0.02, 1.1)),
+            ((), None),
+        ]
+    ],
 }
 
 #: how a simulation is told what the effect depends on, where there is something to tell
@@ -160,10 +170,14 @@ def test_the_core_takes_and_gives_the_same_numbers(effect: Effect) -> None:
 @each_effect
 def test_zero_of_it_changes_nothing(effect: Effect) -> None:
     plain, (q_rad, said) = true_arm(), poses()
-    joints = [replace(joint, effects=with_extras(joint.effects, [effect.name], [1, 2])) for joint in plain.joints]
+    # what is known of it from the design stays, such as to which a joint is coupled
+    drawn_only = [replace(own, **effect.none()) for own in EXAMPLES[effect.name]]
+    joints = [
+        replace(joint, effects=with_extras(own, [effect.name], [1, 2]))
+        for joint, own in zip(plain.joints, drawn_only, strict=True)
+    ]
     arm = replace(plain, joints=tuple(joints))
     assert arm.extras == [effect.name]
-    # an arm without masses has no moments, and none is needed for zero of it
     np.testing.assert_array_equal(arm.tip(q_rad, **said), plain.tip(q_rad))
     without = [replace(own, **effect.none()) for own in EXAMPLES[effect.name]]
     assert not any(effect.has(own) for own in without)

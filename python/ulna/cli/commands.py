@@ -14,6 +14,7 @@ from typer.main import get_command
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
     "new": "ulna.cli.new",
+    "show": "ulna.cli.show",
     "calibrate": "ulna.cli.calibrate",
     "identify": "ulna.cli.identify",
     "evaluate": "ulna.cli.evaluate",

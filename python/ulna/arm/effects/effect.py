@@ -91,6 +91,11 @@ class Effect(ABC):
         what belongs to it. orders: of harmonics."""
         return [(None, self.patterns)]
 
+    def ratios(self, joints: Sequence[Any]) -> list[tuple[int, int, float]]:
+        """What of it is a constant share of other encoders in a joint's turn: (joint, encoder, ratio), counted from 0.
+        A picture of the arm has that; what else an effect does is too small to be seen in one."""
+        return []
+
     def check_joints(self, joints: Sequence[Any], path: Path) -> None:
         """Whether it makes sense in an arm file with such joints. Raises UlnaInputError."""
         return

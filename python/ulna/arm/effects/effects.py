@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 from ulna.arm.conditions import Condition
 from ulna.arm.effects.backlash import BacklashOfJoint
 from ulna.arm.effects.compliance import ComplianceOfJoint
+from ulna.arm.effects.coupling import CouplingOfJoint
 from ulna.arm.effects.effect import Effect, Row
 from ulna.arm.effects.expansion import ExpansionOfJoint
 from ulna.arm.effects.harmonics import HarmonicsOfJoint
@@ -27,6 +28,7 @@ from ulna.ground.errors import UlnaInputError, nearest
 @dataclass(frozen=True)
 class Effects(
     # a row each; dataclasses take the fields of the last one first
+    CouplingOfJoint,
     BacklashOfJoint,
     ComplianceOfJoint,
     ExpansionOfJoint,
