@@ -20,8 +20,8 @@ __version__ = VERSION
 renamed.install()
 provided.provide(
     {
-        "arm of a URDF": "ulna.exchange.drawn:arm_of_urdf",
-        "arm of a DH table": "ulna.exchange.drawn:arm_of_dh",
+        "arm of a URDF": "ulna.exchange.in_memory:arm_of_urdf",
+        "arm of a DH table": "ulna.exchange.in_memory:arm_of_dh",
         "columns of a frame": "ulna.proposals.recognised:recognised",
         "plots of a result": "ulna.documents.plotted:ResultPlots",
     }
