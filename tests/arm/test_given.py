@@ -13,6 +13,8 @@ import pytest
 import ulna
 from ulna.arm.given import as_arm
 from ulna.calibration.given import as_result
+from ulna.exchange.export.dh import dh_table
+from ulna.exchange.export.urdf import urdf_text
 from ulna.study.given import as_study
 
 PLATINUM = Path(__file__).resolve().parents[2] / "examples" / "platinum"
@@ -52,6 +54,8 @@ def test_every_way_gives_the_same_arm(result: ulna.Result, folder: Path) -> None
 
 
 FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+    "urdf_text": urdf_text,
+    "dh_table": lambda arm: dh_table(arm, "dh", Path("arm")),
     "evaluate": lambda arm: ulna.evaluate(arm, PLATINUM / "check.toml").overall,
     "measure": lambda arm: ulna.measure(arm, np.full((2, 7), 0.3), encoder_u_rad=5e-6).covariance_mm2.tolist(),  # type: ignore[union-attr]
     "measure a file": lambda arm: ulna.measure(arm, PLATINUM / "length.csv", encoder_u_rad=5e-6).table.rows(),  # type: ignore[union-attr]

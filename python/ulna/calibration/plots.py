@@ -57,6 +57,11 @@ class Plots(ABC):
         known."""
 
     @abstractmethod
+    def arm(self, ax: Axes | None = None) -> Axes:
+        """The calibrated arm, its axes and frames: in the pose of a reading in the middle of all, or, where the study
+        is not known, in its start pose."""
+
+    @abstractmethod
     def map(self, view: View = "xy", ax: Axes | None = None) -> Axes:
         """Residuals in space: arrows at the tips, seen from above (view "xy") or from a side ("xz", "yz"). Raises
         UlnaInputError where the study is not known, or no residual has a direction."""

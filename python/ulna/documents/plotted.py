@@ -19,6 +19,8 @@ from ulna.documents.content.distribution import Sample, samples
 from ulna.documents.content.parameters import parameters
 from ulna.documents.content.quality import quality_rows, residual_row
 from ulna.documents.content.readings import length_errors, reading_rows
+from ulna.documents.content.standing import standing_arm
+from ulna.documents.drawn import arm as of_arm
 from ulna.documents.drawn import parameters as of_parameters
 from ulna.documents.drawn import residuals as of_residuals
 from ulna.documents.languages.text import plain
@@ -33,6 +35,9 @@ from ulna.uncertainties.uncertainty import check_same
 WORDS = Words("en")
 SMALL = 8.0
 """Of a legend's letters."""
+SCREEN_PX = (640.0, 520.0)
+PX_PER_IN = 100.0
+"""Of the arm's drawing, whose sizes are in px."""
 MARK = 5.0
 """Of a reading."""
 
@@ -118,6 +123,15 @@ class ResultPlots(Plots):
         with _axes(ax, 6.4, 5.6) as axes:
             factor = of_residuals.arrows(axes, quiver, reading_rows(self._result.residuals), say, view, SMALL)
             axes.set_title(f"residuals × {factor:g}", fontsize=10)
+        return axes
+
+    def arm(self, ax: Axes | None = None) -> Axes:
+        study = None if self._study is None else study_of_arm(self._study, self._result.arm)
+        found = standing_arm(self._result.arm, study, reading_rows(self._result.residuals))
+        view = of_arm.seen(found, *SCREEN_PX)
+        with _axes(ax, view.width_px / PX_PER_IN, view.height_px / PX_PER_IN) as axes:
+            of_arm.arm(axes, found, view, 72.0 / PX_PER_IN)
+            axes.set_aspect("equal")
         return axes
 
     def _cloud(self, found: Cloud, ax: Axes | None) -> Axes:

@@ -32,5 +32,11 @@ def as_study(given: StudyLike) -> Study:
         return given.its_study()
     if not isinstance(given, str | os.PathLike):
         raise wrong_type(given, EXPECTED)
+    return Study.load(study_path(given))
+
+
+def study_path(given: str | os.PathLike[str]) -> Path:
+    """Of a folder with one the study.toml in it; any other path as it is."""
     path = Path(given)
-    return Study.load(path / "study.toml" if path.is_dir() else path)
+    inside = path / "study.toml"
+    return inside if path.is_dir() and inside.is_file() else path
