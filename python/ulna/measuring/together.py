@@ -52,7 +52,7 @@ class Together:
         other."""
         half = len(direction)
         apart = np.einsum("ki,kip->kp", direction, self._by_parameter[half:] - self._by_parameter[:half])
-        variance = np.einsum("kp,pq,kq->k", apart, self._parameters, apart)
+        variance = ((apart @ self._parameters) * apart).sum(axis=1)
         encoders = self._of_encoders
         if len(encoders):
             variance += np.einsum("ki,kij,kj->k", direction, encoders[half:] + encoders[:half], direction)
