@@ -8,7 +8,6 @@ by blocks.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,41 +76,55 @@ class _Scene:
     covariance: ParameterCovariance
     variance_mm2: float
 
-    def poses(self) -> Iterator[PlacementPose]:
+    def poses(self) -> list[PlacementPose]:
+        """Standings whose touches are of the same features in the same order go together."""
         code, labels = self.group.labels.as_they_appear()
         order = np.argsort(code, kind="stable")
-        tips, by_parameters, weights = self._touches()
-        for label, rows in zip(labels, np.split(order, np.flatnonzero(np.diff(code[order])) + 1), strict=True):
-            pose = self._pose(label, rows, tips[rows], by_parameters[rows], weights[rows])
-            if pose is not None:
-                yield pose
+        alike: dict[bytes, list[int]] = {}
+        rows = np.split(order, np.flatnonzero(np.diff(code[order])) + 1)
+        for standing, own in enumerate(rows):
+            alike.setdefault(self.group.feature[own].tobytes(), []).append(standing)
+        touches = self._touches()
+        found: list[tuple[int, PlacementPose]] = []
+        for standings in alike.values():
+            together = np.stack([rows[k] for k in standings])
+            poses = self._alike([labels[k] for k in standings], together, *(values[together] for values in touches))
+            found += zip(standings, poses, strict=False)
+        return [pose for _, pose in sorted(found, key=lambda numbered: numbered[0])]
 
-    def _pose(self, placement: str, rows: I64, tips: F64, by_parameters: F64, weights: F64) -> PlacementPose | None:
-        artefact, features = self.group.artefact, self.features_mm[self.group.feature[rows]]
+    def _alike(
+        self, placements: list[str], rows: I64, tips: F64, by_parameters: F64, weights: F64
+    ) -> list[PlacementPose]:
+        """Of M standings with n touches each, of the same features: rows (M, n), tips (M, n, 3) and so on; none where
+        what was touched does not say where the artefact's origin is."""
+        features = self.features_mm[self.group.feature[rows[0]]]
         stood = tips - self.residuals_mm[rows]
         centre, spread = features.mean(axis=0), features - features.mean(axis=0)
         size = max(float(np.abs(features).max()), 1.0)
         known = int(np.sum(np.linalg.svd(spread, compute_uv=False) > _FLAT * size))
-        rotation = _rotation(spread, stood - stood.mean(axis=0), known)
-        origin = stood.mean(axis=0) - rotation @ centre
-        beside = centre if known == 0 else _beside(centre, spread, known)
-        if np.linalg.norm(beside) > _FLAT * size:
-            return None  # the origin turns about what was touched
-        turns = _turns(rotation, spread, known)
-        lever = features @ rotation.T
-        columns = [np.concatenate([np.eye(3), -_cross(arm) @ turns], axis=1) for arm in lever]
-        u = self._u(np.stack(columns), by_parameters, weights)
-        turned = None if u is None or not known else float(np.sqrt(np.linalg.eigvalsh(u[3:, 3:])[-1]))
+        if np.linalg.norm(centre if known == 0 else _beside(centre, spread, known)) > _FLAT * size:
+            return []  # the origin turns about what was touched
+        middle = stood.mean(axis=1)
+        rotation = _rotations(spread, stood - middle[:, None, :], known)
+        origin = middle - rotation @ centre
+        lever = features @ rotation.transpose(0, 2, 1)
+        shift = np.broadcast_to(np.eye(3), (*rows.shape, 3, 3))
+        columns = np.concatenate([shift, -_cross(lever) @ _turns(rotation, spread, known)[:, None]], axis=3)
+        u = self._u(columns, by_parameters, weights)
+        turned = None if u is None or not known else np.sqrt(np.linalg.eigvalsh(u[:, 3:, 3:])[:, -1])
         line = rotation @ _along(features) if known == 1 else None
-        return PlacementPose(
-            artefact.name,
-            placement,
-            origin.tolist(),
-            None if u is None else np.sqrt(np.diag(u)[:3]).tolist(),
-            axes=rotation.T.tolist() if known > 1 else None,
-            direction=None if line is None else line.tolist(),
-            u_turn_rad=turned,
-        )
+        return [
+            PlacementPose(
+                self.group.artefact.name,
+                placement,
+                origin[k].tolist(),
+                None if u is None else np.sqrt(np.diag(u[k])[:3]).tolist(),
+                axes=rotation[k].T.tolist() if known > 1 else None,
+                direction=None if line is None else line[k].tolist(),
+                u_turn_rad=None if turned is None else float(turned[k]),
+            )
+            for k, placement in enumerate(placements)
+        ]
 
     def _touches(self) -> tuple[F64, F64, F64]:
         """Tips (N, 3), their derivatives by the parameters of the covariance (N, 3, P), weights (N, 3, 3)."""
@@ -141,37 +154,42 @@ class _Scene:
         return tips, by_parameters, covariance
 
     def _u(self, columns: F64, by_parameters: F64, weights: F64) -> F64 | None:
-        """Covariance of origin and turns; None where nothing is known of the noise."""
+        """Covariances of origin and turns; None where nothing is known of the noise."""
         names = [k for k, name in enumerate(self.covariance.names) if name in self.arm.parameter_names]
         of_parameters = self.covariance.matrix[np.ix_(names, names)]
         if not np.isfinite(weights).all() or not np.isfinite(of_parameters).all():
             return None
-        weighted = np.einsum("nki,nkl->nil", columns, weights)
-        normal = np.einsum("nil,nlj->ij", weighted, columns)
-        inverse = np.linalg.inv(normal)
-        follow = inverse @ np.einsum("nil,nlj->ij", weighted, by_parameters)
-        found: F64 = inverse + follow @ of_parameters @ follow.T
+        weighted = columns.transpose(0, 1, 3, 2) @ weights
+        inverse = np.linalg.inv((weighted @ columns).sum(axis=1))
+        follow = inverse @ (weighted @ by_parameters).sum(axis=1)
+        found: F64 = inverse + follow @ of_parameters @ follow.transpose(0, 2, 1)
         return found
 
 
-def _rotation(features: F64, stood: F64, known: int) -> F64:
-    """The rotation that takes centred features to where they stood; of features on a line, the smallest such."""
+def _rotations(features: F64, stood: F64, known: int) -> F64:
+    """(M, 3, 3): the rotations that take centred features (n, 3) to where they stood (M, n, 3); of features on a line,
+    the smallest such."""
     if known == 0:
-        return np.eye(3)
-    u, _, vt = np.linalg.svd(stood.T @ features)
+        return np.broadcast_to(np.eye(3), (len(stood), 3, 3))
+    u, _, vt = np.linalg.svd(stood.transpose(0, 2, 1) @ features)
     if known == 1:
-        return _smallest(vt[0], u[:, 0])
-    return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
+        return _smallest(vt[:, 0], u[:, :, 0])
+    proper = np.broadcast_to(np.eye(3), u.shape).copy()
+    proper[:, 2, 2] = np.linalg.det(u @ vt)
+    return np.asarray(u @ proper @ vt)
 
 
 def _smallest(a: F64, b: F64) -> F64:
-    """The smallest rotation that takes a unit vector to another."""
-    axis, cosine = np.cross(a, b), float(a @ b)
-    if cosine < -1.0 + 1e-12:
-        across = np.linalg.svd(a[None, :])[2][1]
-        return np.asarray(2.0 * np.outer(across, across) - np.eye(3))
-    skew = _cross(axis)
-    return np.asarray(np.eye(3) + skew + skew @ skew / (1.0 + cosine))
+    """(M, 3, 3): the smallest rotation that takes a unit vector (M, 3) to another; a half turn about any axis across
+    it where they are opposite."""
+    skew = _cross(np.cross(a, b))
+    cosine = np.einsum("mi,mi->m", a, b)[:, None, None]
+    opposite = cosine < -1.0 + 1e-12
+    found = np.eye(3) + skew + skew @ skew / np.where(opposite, 1.0, 1.0 + cosine)
+    across = np.cross(a, np.eye(3)[np.argmin(np.abs(a), axis=1)])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    half_turn = 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
+    return np.where(opposite, half_turn, found)
 
 
 def _beside(centre: F64, spread: F64, known: int) -> F64:
@@ -183,12 +201,12 @@ def _beside(centre: F64, spread: F64, known: int) -> F64:
 
 
 def _turns(rotation: F64, spread: F64, known: int) -> F64:
-    """(3, 0), (3, 2) or (3, 3): axes, base frame, about which a turn shows."""
+    """(M, 3, 0), (M, 3, 2) or (M, 3, 3): axes, base frame, about which a turn shows."""
     if known == 0:
-        return np.zeros((3, 0))
+        return np.zeros((len(rotation), 3, 0))
     if known == 1:
         return np.asarray(rotation @ np.linalg.svd(spread)[2][1:].T)
-    return np.eye(3)
+    return np.broadcast_to(np.eye(3), rotation.shape)
 
 
 def _along(features: F64) -> F64:
@@ -198,5 +216,8 @@ def _along(features: F64) -> F64:
 
 
 def _cross(a: F64) -> F64:
-    """[a]×, (3, 3)."""
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+    """[a]×, (…, 3, 3) of (…, 3)."""
+    found = np.zeros((*a.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., i, j], found[..., j, i] = -a[..., k], a[..., k]
+    return found
