@@ -60,6 +60,7 @@ class FittedStudy:
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
             "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
+            "study": lambda: self.study,
         }
 
     @cached_property

@@ -15,6 +15,7 @@ from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
 from ulna.geometry.rigid import turned
 from ulna.ground.arrays import F64
+from ulna.ground.shown import About, Shown, Table
 from ulna.planning.candidates import Candidates
 from ulna.planning.scene import Figures
 from ulna.planning.spec import PlanSpec
@@ -25,8 +26,8 @@ FORMAT = "ulna-plan-result/1"
 FILES = ["plan.csv", "plan.json", "places.svg", "places.png", "curve.svg", "curve.png"]
 
 
-@dataclass(frozen=True)
-class Plan:
+@dataclass(frozen=True, repr=False)
+class Plan(Shown):
     """Measurements to take, in their order."""
 
     arm: Arm
@@ -61,6 +62,17 @@ class Plan:
     def gain(self) -> float:
         """By which part the expected length uncertainty is smaller than that of random measurements."""
         return 1.0 - self.planned.u_length_mm / self.random.u_length_mm
+
+    def about(self) -> About:
+        """What it gains over random measurements; the list to follow is in plan.csv."""
+        each = {"planned": self.planned, "random": self.random}
+        rows = [[name, f"{1000.0 * figures.u_length_mm:.3g}"] for name, figures in each.items()]
+        artefact = self.spec.artefact
+        return About(
+            f"Plan of {len(self.chosen)} measurements of {artefact.kind} '{artefact.name}' with '{self.arm.name}'",
+            {"chosen from": f"{self.candidates} candidates", "determined": f"{self.determined} of {self.free} free"},
+            [Table(["expected length uncertainty", "µm"], rows)],
+        )
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write plan.csv, plan.json and the pictures. Raises UlnaInputError."""

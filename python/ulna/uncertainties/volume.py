@@ -15,6 +15,7 @@ from ulna.arm.directions import drawn, steps
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown, Table
 from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
@@ -67,8 +68,8 @@ class Somewhere:
     """(N,) u times its own coverage factor; of a point NaN, for a position has no single k."""
 
 
-@dataclass(frozen=True)
-class VolumeMap:
+@dataclass(frozen=True, repr=False)
+class VolumeMap(Shown):
     """What was found."""
 
     arm: str
@@ -82,6 +83,18 @@ class VolumeMap:
     not_determined: list[dict[str, Any]]
     """Directions that the calibration left open, and on which some of it depends."""
     left_out: list[str]
+
+    def about(self) -> About:
+        """Middle and largest of points and of each length."""
+        named = {"points, u": self.points.u_mm}
+        named |= {f"lengths of {length:g} mm, U": found.expanded_mm for length, found in self.lengths.items()}
+        rows = []
+        for name, values in named.items():
+            known = values[np.isfinite(values)]
+            shown = [1000.0 * float(np.median(known)), 1000.0 * float(known.max())] if len(known) else []
+            rows.append([name, *([f"{value:.3g}" for value in shown] or ["–", "–"]), str(len(values) - len(known))])
+        title = f"Uncertainty all over the volume of '{self.arm}', probe '{self.probe}', reach {self.reach_mm:.0f} mm"
+        return About(title, {}, [Table(["", "median / µm", "largest / µm", "not determined"], rows)], self.left_out)
 
     @property
     def whole(self) -> bool:

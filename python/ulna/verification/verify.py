@@ -8,10 +8,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from ulna.arm.given import ArmLike
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.shown import About, Shown, Table
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
@@ -27,8 +29,8 @@ TABLE = "values.csv"
 PICTURES = ("lengths.svg", "lengths.png")
 
 
-@dataclass(frozen=True)
-class Verification:
+@dataclass(frozen=True, repr=False)
+class Verification(Shown):
     """What an acceptance test found."""
 
     plan: VerifyPlan
@@ -49,6 +51,25 @@ class Verification:
         if named is not None:
             return named
         return self.plan.arms[0].arm.name if self.plan.arms else "not named"
+
+    def about(self) -> About:
+        """Each figure in each state, with its limit and verdict."""
+        rows = [
+            [
+                state.state,
+                figure.definition.key,
+                figure.verdict or "no limit",
+                f"{1000.0 * figure.worst.single.value_mm:.1f}",
+                "–" if figure.worst.limit_mm is None else f"{1000.0 * figure.worst.limit_mm:.1f}",
+            ]
+            for state in self.states
+            for figure in state.figures.values()
+        ]
+        return About(
+            f"Verification of '{self.arm}' after {self.plan.profile.file.name}: {self.verdict or 'no limit stated'}",
+            {},
+            [Table(["state", "figure", "verdict", "worst / µm", "limit / µm"], rows, texts=3)],
+        )
 
     def file(self) -> VerificationFile:
         """`verification.json`, lengths in mm."""
@@ -87,14 +108,14 @@ def lengths_of(state: StateResult) -> list[Judged]:
     return [judged for test in state.tests if kind_of(test.kind).length_errors for judged in test.figures[0].values]
 
 
-def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress | None = None) -> Verification:
-    """An acceptance test: `plan` a verify file; `arm` an arm file or a result, for encoder readings.
+def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | None = None) -> Verification:
+    """An acceptance test: `plan` a verify file; `arm`, for encoder readings, an arm, a result, or a path of one.
 
     Raises UlnaInputError for whatever cannot be used. Warns with InputWarning of what is used with a remark.
     """
     import warnings
 
-    stated = load_verify(Path(plan), None if arm is None else Path(arm))
+    stated = load_verify(Path(plan), arm)
     for remark in stated.warnings:
         warnings.warn(remark, InputWarning, stacklevel=2)
     rule = DecisionRule.of(stated.profile.file.decision, stated.file.rule)

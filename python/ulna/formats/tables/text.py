@@ -225,7 +225,7 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
         return _looked_at(open_lines(path, what, layout))
     line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
     separator = layout.separator or ","
-    _check_separator(path, line, separator, layout)
+    check_separator(path, line, separator, layout)
     names = [name.strip() for name in next(csv.reader([line], delimiter=separator), [""])]
     if not layout.header:
         names = [f"c{k}" for k in range(1, len(names) + 1)]
@@ -243,11 +243,11 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
 def _looked_at(table: LineTable) -> LineTable:
     """The same. Raises UlnaInputError where its header shows another separator than it was read with."""
     if len(table.columns) == 1 and table.header_line:
-        _check_separator(table.path, table.columns[0], table.separator, table.layout, table.head)
+        check_separator(table.path, table.columns[0], table.separator, table.layout, table.head)
     return table
 
 
-def _check_separator(path: Path, line: str, separator: str, layout: Layout, at: str = "line 1") -> None:
+def check_separator(path: Path, line: str, separator: str, layout: Layout, at: str = "line 1") -> None:
     """Another separator in the first line, and none of the expected ones, is told with the key that would say so."""
     if separator in line:
         return
