@@ -11,6 +11,8 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from ulna.cli.help import Command, Group
+
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
     "new": "ulna.cli.new",
@@ -27,6 +29,7 @@ COMMANDS = {
     "report": "ulna.cli.report",
     "verify": "ulna.cli.verify",
     "reproduce": "ulna.cli.reproduce",
+    "completion": "ulna.cli.completion",
 }
 #: what has commands of its own → the module that has them, as `app`
 GROUPS = {
@@ -54,8 +57,8 @@ class _Loading(Mapping[str, TyperCommand | TyperGroup]):
 
 
 def _command(name: str, module: str) -> TyperCommand | TyperGroup:
-    app = typer.Typer(add_completion=False)
-    app.command(name)(getattr(importlib.import_module(module), module.rpartition(".")[2]))
+    app = typer.Typer(add_completion=False, rich_markup_mode=None)
+    app.command(name, cls=Command)(getattr(importlib.import_module(module), module.rpartition(".")[2]))
     made: Any = get_command(app)  # typer's own name of the type is private
     return made  # type: ignore[no-any-return]
 
@@ -65,7 +68,7 @@ def _group(module: str) -> TyperCommand | TyperGroup:
     return made  # type: ignore[no-any-return]
 
 
-class Commands(TyperGroup):
+class Commands(Group):
     """The group `ulna`: its commands are those of the two tables above."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
