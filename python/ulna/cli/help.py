@@ -35,6 +35,11 @@ class Group(TyperGroup):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         formatter.write(page(self, ctx))
 
+    def listed(self, ctx: Any) -> list[tuple[str, str]]:
+        """Each command, and what it is for."""
+        commands = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        return [(name, first_paragraph(each.help)) for name, each in commands if each and not each.hidden]
+
 
 def page(command: Any, ctx: Any) -> str:
     """The help page of a command or group."""
@@ -48,9 +53,8 @@ def page(command: Any, ctx: Any) -> str:
             own = "Arguments" if parameter.param_type_name == "argument" else "Options"
             heading = getattr(parameter, "rich_help_panel", None) or own
             panels.setdefault(heading, []).append((_name(parameter), _said(parameter, ctx)))
-    if isinstance(command, TyperGroup):
-        commands = [(name, command.get_command(ctx, name)) for name in command.list_commands(ctx)]
-        panels["Commands"] = [(name, _first_sentence(each)) for name, each in commands if each and not each.hidden]
+    if isinstance(command, Group):
+        panels["Commands"] = command.listed(ctx)
     parts += [_heading(heading) + "\n" + _listed(rows, width) for heading, rows in panels.items()]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -70,8 +74,9 @@ def _said(parameter: Any, ctx: Any) -> str:
     return " ".join(record[1].split()) if record else ""
 
 
-def _first_sentence(command: Any) -> str:
-    return " ".join((command.help or "").split("\n\n")[0].split())
+def first_paragraph(said: str | None) -> str:
+    """On one line."""
+    return " ".join((said or "").split("\n\n")[0].split())
 
 
 def _listed(rows: Iterable[tuple[str, str]], width: int) -> str:
