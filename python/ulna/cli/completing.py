@@ -15,7 +15,7 @@ SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 def get_ready() -> None:
     """Where a shell asks for completions: make Typer know the shells."""
     if VARIABLE in os.environ:
-        from typer.completion import completion_init
+        from typer.completion import completion_init  # type: ignore[attr-defined]  # handed on, unsaid
 
         completion_init()
 

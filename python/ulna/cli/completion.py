@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -33,8 +33,9 @@ def completion(
 
     Example: [bold]ulna completion --install[/bold]
     """
-    from typer.completion import get_completion_script
-    from typer.completion import install as put
+    import typer.completion
+
+    scripts: Any = typer.completion  # what it hands on is unsaid
 
     from ulna.cli import output
     from ulna.ground.errors import UlnaInputError, nearest
@@ -48,11 +49,11 @@ def completion(
             + (hint if "Did you mean" in hint else " Name it: ulna completion bash.")
         )
     if not install:
-        print(get_completion_script(prog_name="ulna", complete_var=VARIABLE, shell=known))
+        print(scripts.get_completion_script(prog_name="ulna", complete_var=VARIABLE, shell=known))
         if sys.stdout.isatty():
             output.say(f"Nothing was written: ulna completion {known} --install puts it where {known} finds it.")
         return
-    _, path = put(known, "ulna", VARIABLE)
+    _, path = scripts.install(known, "ulna", VARIABLE)
     output.say(f"Written: {path}. It works in every {known} that is opened from now on.")
 
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from statistics import NormalDist
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ulna.ground.arrays import F64
 
@@ -27,7 +28,7 @@ def normal(p: float) -> float:
     return NormalDist().inv_cdf(p)
 
 
-def normals(p: F64) -> F64:
+def normals(p: NDArray[np.floating]) -> F64:
     """The same of each p, (N,)."""
     inverse = NormalDist().inv_cdf
     return np.array([inverse(each) for each in p.tolist()])
@@ -127,7 +128,8 @@ def _beta(a: F64, b: F64, x: F64, y: F64) -> F64:
     u, w = np.maximum(u, _SMALLEST), np.maximum(w, _SMALLEST)
     front = np.exp(_lgamma(p + q) - _lgamma(p) - _lgamma(q) + p * np.log(u) + q * np.log(w)) / p
     part = front * _fraction(p, q, u)
-    return np.where(swapped, 1.0 - part, part)
+    found: F64 = np.where(swapped, 1.0 - part, part)
+    return found
 
 
 def _fraction(a: F64, b: F64, x: F64) -> F64:

@@ -14,6 +14,7 @@ from ulna.arm.arm import Arm
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.output import new_file, refuse_inputs
 from ulna.ground.arrays import F64, Progress
+from ulna.ground.extras import need
 from ulna.measuring.job import MeasureJob
 
 Angle = Literal["rad", "deg", "counts"]
@@ -149,6 +150,7 @@ def _write_csv(frames: Iterator[pl.DataFrame], path: Path) -> None:
 
 
 def _write_parquet(frames: Iterator[pl.DataFrame], path: Path) -> None:
+    need(str(path), "pyarrow")
     import pyarrow.parquet
 
     with ExitStack() as stack:
