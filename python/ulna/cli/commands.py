@@ -15,6 +15,7 @@ from ulna.cli.help import Command, Group, first_paragraph
 
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
+    "demo": "ulna.cli.demo",
     "new": "ulna.cli.new",
     "calibrate": "ulna.cli.calibrate",
     "identify": "ulna.cli.identify",

@@ -35,3 +35,10 @@ def languages(incomplete: str) -> list[str]:
     from ulna.documents.languages.languages import LANGUAGES
 
     return [code for code in LANGUAGES if code.startswith(incomplete)]
+
+
+def demos(incomplete: str) -> list[str]:
+    """Examples that come with Ulna."""
+    from ulna.cli.demos import DEMOS
+
+    return [name for name in DEMOS if name.startswith(incomplete)]
