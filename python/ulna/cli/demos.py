@@ -36,7 +36,7 @@ class Demo:
     """Command → what for."""
 
 
-_OWN = ("new --readings YOUR-TABLE.xlsx", "a table of your own")
+_OWN = ("new --readings YOUR-TABLE.xlsx", "your own table")
 _BEFORE_AND_AFTER = ("", "Before and after")
 
 DEMOS = {
@@ -63,9 +63,9 @@ DEMOS = {
             ("result/result.json", "all that was found, with uncertainties"),
         ),
         next=(
-            ("report {}/result -o {}/report.html", "a report to look at"),
-            ("measure {}/result {}/check-bars.csv", "points and their u"),
-            ("identify {}/study.toml", "what they can tell"),
+            ("report {}/result -o {}/report.html", "the report"),
+            ("measure {}/result/result.json {}/bars.csv", "x, y, z and u"),
+            ("identify {}/study.toml", "what they tell"),
             _OWN,
         ),
     ),
@@ -75,8 +75,8 @@ DEMOS = {
         steps=(Step("Fit the probe alone", "calibrate {}/seat.toml -o {}/result", _BEFORE_AND_AFTER),),
         results=(("result/arm.toml", "the arm with its new probe"), ("result/result.json", "all that was found")),
         next=(
-            ("measure {}/result {}/seat.csv", "points and their u"),
-            ("report {}/result -o {}/report.html", "a report to look at"),
+            ("measure {}/result/result.json {}/seat.csv", "x, y, z and u"),
+            ("report {}/result -o {}/report.html", "the report"),
             _OWN,
         ),
     ),
@@ -99,7 +99,7 @@ DEMOS = {
         ),
         next=(
             ("calibrate {}/study/study.toml", "which readings are far off"),
-            ("report {}/result -o {}/report.html", "a report to look at"),
+            ("report {}/result -o {}/report.html", "the report"),
             _OWN,
         ),
     ),
