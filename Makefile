@@ -4,13 +4,15 @@
 VENV := .venv
 BIN := $(VENV)/bin
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
+# Says what takes long before it begins, and how long it took: tools/step.sh "what" "command".
+STEP := tools/step.sh
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # mkdocs-material announces its plans for another major version of mkdocs; ours is pinned by the lock.
 export NO_MKDOCS_2_WARNING := 1
 
 .PHONY: help
 help: ## list these targets
-	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | awk -F'\t' '{printf "make %-10s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | awk -F'\t' '{printf "make %-12s %s\n", $$1, $$2}'
 
 # ---------------------------------------------------------------- build
 
@@ -19,26 +21,35 @@ build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bi
 
 # Every package comes from the lock file and must have the hash written there.
 $(VENV)/.locked: requirements-dev.lock
-	@echo "Installing the locked Python packages into $(VENV)/ …"
-	@python=$$(tools/prerequisites.sh build) && $$python -m venv --clear $(VENV)
-	@$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.lock
+	@python=$$(tools/prerequisites.sh build) && $(STEP) "Making $(VENV)/ with $$(grep -c == $<) locked Python packages (one to three minutes)" \
+		"$$python -m venv --clear $(VENV) && $(BIN)/python -m pip install --quiet --require-hashes --requirement $<"
 	@touch $@
 
 # Python sources are used where they stand (an editable install), so only Rust changes need a rebuild.
 $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 	@tools/prerequisites.sh build >/dev/null
-	@echo "Compiling the core in release mode (the first time takes a minute or two) …"
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@$(STEP) "Compiling the core in release mode (two to five minutes the first time, then what changed)" \
+		'PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .'
 	@touch $@
 
 .PHONY: demo
 demo: build ## calibrate the shipped example, the virtual Platinum with its bent probe; result in out/demo
+	@echo "Calibrating the example (a second or two):"
 	$(BIN)/ulna calibrate examples/platinum/study.toml -o out/demo --force
+
+WHEELS := target/wheels
+
+.PHONY: wheel
+wheel: build ## build the wheel, examples and all, into target/wheels/
+	@rm -f $(WHEELS)/ulna-*.whl
+	@$(STEP) "Building the wheel (a minute or two: the core is linked anew)" \
+		"$(BIN)/maturin build --quiet --release --locked --interpreter $(BIN)/python --out $(WHEELS)"
+	@ls $(WHEELS)/ulna-*.whl
 
 # ---------------------------------------------------------------- test
 
 .PHONY: test
-test: prerequisites lint types rust-test python-test docs ## the whole suite: Rust, Python, lint, types, docs
+test: prerequisites lint types rust-test python-test wheel-test docs ## the whole suite: Rust, Python, lint, types, wheel, docs
 
 .PHONY: prerequisites
 prerequisites:
@@ -69,6 +80,10 @@ rust-test: build ## tests of the core, and its documentation with warnings as er
 .PHONY: python-test
 python-test: build ## tests through the public door
 	$(BIN)/python -m pytest -n 2
+
+.PHONY: wheel-test
+wheel-test: wheel ## install the wheel into a fresh environment and run `ulna demo` there (a minute or two)
+	ULNA_WHEEL="$$(ls $(WHEELS)/ulna-*.whl)" $(BIN)/python -m pytest -p no:xdist tests/wheel
 
 .PHONY: docs
 docs: build ## build the documentation into site/, strict
