@@ -49,12 +49,22 @@ def test_each_example_plays_and_what_it_says_is_so(tmp_path: Path, name: str) ->
             assert run(*words).returncode == 0, command
 
 
-def test_the_first_screen_is_short_and_the_arm_comes_out(tmp_path: Path) -> None:
-    done = played(tmp_path)
+@pytest.fixture(scope="module")
+def bars(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    """The first example, played once: its folder's parent, and what was printed."""
+    folder = tmp_path_factory.mktemp("newcomer")
+    return folder, played(folder)
+
+
+Played = tuple[Path, subprocess.CompletedProcess[str]]
+
+
+def test_the_first_screen_is_short_and_the_arm_comes_out(bars: Played) -> None:
+    folder, done = bars
     lines = done.stdout.splitlines()
     assert len(lines) <= 40
     assert all(len(line) <= 80 for line in lines if not line.startswith("Written: "))
-    document = strict_json((tmp_path / "ulna-demo" / "result" / "result.json").read_text())
+    document = strict_json((folder / "ulna-demo" / "result" / "result.json").read_text())
     assert document["fit"]["converged"]
     before, after = (document["overall"][when]["length_error_rms_mm"] for when in ("before", "after"))
     assert after < 0.02 < 10.0 < before
@@ -63,10 +73,10 @@ def test_the_first_screen_is_short_and_the_arm_comes_out(tmp_path: Path) -> None
     assert document["overall"]["after"]["length_error_rms_mm"] == same.after["length_error_rms_mm"]
 
 
-def test_the_commands_shown_print_what_the_demo_shows(tmp_path: Path) -> None:
-    done = played(tmp_path)
+def test_the_commands_shown_print_what_the_demo_shows(bars: Played) -> None:
+    folder, done = bars
     step = DEMOS["bars"].steps[1]
-    words = [str(tmp_path / word.replace("{}", "ulna-demo")) if "{}" in word else word for word in step.command.split()]
+    words = [str(folder / word.replace("{}", "ulna-demo")) if "{}" in word else word for word in step.command.split()]
     itself = "\n".join(line.rstrip() for line in run(*words).stdout.splitlines())
     paragraph = next(part for part in itself.split("\n\n") if part.startswith("Over all readings"))
     assert paragraph.strip() in done.stdout
@@ -100,8 +110,8 @@ def test_list_and_unknown_names(tmp_path: Path) -> None:
     assert not (tmp_path / "x").exists()
 
 
-def test_every_file_of_an_example_is_copied_byte_for_byte(tmp_path: Path) -> None:
-    assert played(tmp_path).returncode == 0
+def test_every_file_of_an_example_is_copied_byte_for_byte(bars: Played) -> None:
+    folder, _ = bars
     for file in DEMOS["bars"].files:
-        copied = tmp_path / "ulna-demo" / Path(file).name
+        copied = folder / "ulna-demo" / Path(file).name
         assert copied.read_bytes() == (examples_folder() / file).read_bytes()

@@ -98,7 +98,7 @@ DEMOS = {
             ("result/arm.toml", "the arm as it was found"),
         ),
         next=(
-            ("calibrate {}/study/study.toml", "which readings are far off"),
+            ("evaluate {}/result/result.json {}/study/study.toml", "each standing"),
             ("report {}/result -o {}/report.html", "the report"),
             _OWN,
         ),
