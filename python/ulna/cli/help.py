@@ -28,6 +28,9 @@ class Command(TyperCommand):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         formatter.write(page(self, ctx))
 
+    def get_help_option(self, ctx: Any) -> Any:
+        return _no_is_no(super().get_help_option(ctx))
+
 
 class Group(TyperGroup):
     """What has commands of its own, with a help page of ours."""
@@ -35,10 +38,21 @@ class Group(TyperGroup):
     def format_help(self, ctx: Any, formatter: Any) -> None:
         formatter.write(page(self, ctx))
 
+    def get_help_option(self, ctx: Any) -> Any:
+        return _no_is_no(super().get_help_option(ctx))
+
     def listed(self, ctx: Any) -> list[tuple[str, str]]:
         """Each command, and what it is for."""
         commands = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
         return [(name, first_paragraph(each.help)) for name, each in commands if each and not each.hidden]
+
+
+def _no_is_no(option: Any) -> Any:
+    """The option `--help`, False where it is not given: of None Typer asks Pydantic, which takes longer to load than
+    the rest of a help page or of a completion."""
+    if option is not None:
+        option.default = False
+    return option
 
 
 def page(command: Any, ctx: Any) -> str:
