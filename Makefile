@@ -21,7 +21,7 @@ build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bi
 
 # Every package comes from the lock file and must have the hash written there.
 $(VENV)/.locked: requirements-dev.lock
-	@python=$$(tools/prerequisites.sh build) && $(STEP) "Making $(VENV)/ with $$(grep -c == $<) locked Python packages (one to three minutes)" \
+	@python=$$(tools/prerequisites.sh build) && $(STEP) "Making $(VENV)/ with $$(grep -c == $<) locked Python packages (one to five minutes)" \
 		"$$python -m venv --clear $(VENV) && $(BIN)/python -m pip install --quiet --require-hashes --requirement $<"
 	@touch $@
 
@@ -118,6 +118,6 @@ lock: ## choose dependencies anew and write their hashes to requirements-dev.loc
 
 .PHONY: clean
 clean: ## remove everything that was built
-	rm -rf $(VENV) target site out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) target site out python/ulna/examples .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find python tests examples benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 	find python -name '*.so' -delete

@@ -109,11 +109,10 @@ DEMOS = {
 def examples_folder() -> Path:
     """Where the examples are: in the package, or in the checkout that is used where it stands. Raises
     UlnaInputError."""
-    here = Path(__file__).resolve()
-    packaged, checkout = here.parents[1] / "examples", here.parents[3] / "examples"
-    for folder in (packaged, checkout):
-        if (folder / "platinum" / "study.toml").is_file():
-            return folder
-    raise UlnaInputError(
-        f"{packaged}: the examples are not there; expected them in the package. Install Ulna from a wheel again."
-    )
+    package = Path(__file__).resolve().parents[1]
+    checkout = package.parents[1]
+    # an editable build lays a copy into the package too, which need not be of today
+    folder = (checkout if (checkout / "crates").is_dir() else package) / "examples"
+    if not (folder / "platinum" / "study.toml").is_file():
+        raise UlnaInputError(f"{folder}: the examples are not there; expected them with Ulna. Install it again.")
+    return folder
