@@ -42,7 +42,7 @@ WHEELS := target/wheels
 .PHONY: wheel
 wheel: build ## build the wheel, examples and all, into target/wheels/
 	@rm -f $(WHEELS)/ulna-*.whl
-	@$(STEP) "Building the wheel (a minute or two: the core is linked anew)" \
+	@$(STEP) "Building the wheel (seconds, as the core is compiled)" \
 		"$(BIN)/maturin build --quiet --release --locked --interpreter $(BIN)/python --out $(WHEELS)"
 	@ls $(WHEELS)/ulna-*.whl
 
