@@ -1,4 +1,4 @@
-"""The reports that the documentation links to, made while it is built: a hook of MkDocs. They are not committed."""
+"""The reports and pages that the documentation links to, made while it is built by a hook of MkDocs; not committed."""
 
 import sys
 from pathlib import Path
@@ -29,6 +29,8 @@ STEPS = [
 REPORT = ["report", "out/demo", "--evaluation", "out/check/evaluation.json"]
 REPORT += ["--verification", "out/test/verification.json", "--lab", "examples/platinum/laboratory.toml"]
 LANGUAGES = ("en", "de")
+#: the page of an arm that the page on `ulna show` links to
+SHOW = ["show", "examples/platinum/truth.toml", "--pose", "60,75,20,120,20,90,0", "-o"]
 
 
 def cheng2011_reports() -> dict[str, bytes]:
@@ -45,10 +47,23 @@ def cheng2011_reports() -> dict[str, bytes]:
         return {name: (folder / name).read_bytes() for name in (*names.values(), *papers)}
 
 
+def arm_pages() -> dict[str, bytes]:
+    """Name → page of `ulna show`, in each language. Raises RuntimeError."""
+    found = {}
+    with reader_folder() as folder:
+        for language in LANGUAGES:
+            name = f"platinum-{language}.html"
+            done = ulna([*SHOW, name, "--language", language], folder)
+            if done.returncode != 0:
+                raise RuntimeError(f"ulna {' '.join(SHOW)} exited with {done.returncode}:\n{done.stderr}")
+            found[name] = (folder / name).read_bytes()
+    return found
+
+
 def on_files(files: Any, config: Any) -> Any:
     """Called by MkDocs: the reports stand in the site's folder reports/."""
     from mkdocs.structure.files import File
 
-    for name, content in cheng2011_reports().items():
+    for name, content in (cheng2011_reports() | arm_pages()).items():
         files.append(File.generated(config, f"reports/{name}", content=content))
     return files

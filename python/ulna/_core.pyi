@@ -234,7 +234,7 @@ class Fitted:
     @property
     def termination(self) -> str:
         """ "converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
-        "max-iterations", "poor-minimum"."""
+        "max-iterations", "poor-minimum", "off-scale"."""
     @property
     def converged(self) -> bool: ...
     @property
@@ -277,6 +277,9 @@ class Fitted:
     @property
     def folded(self) -> list[str]:
         """Which symmetries brought the found arm back near the nominal: "flip of joint 3", "mirror"."""
+    @property
+    def common_factor(self) -> float | None:
+        """Found over drawn, where all lengths of the arm are off their start by one factor."""
     @property
     def identifiability(self) -> Identifiability: ...
     @property

@@ -31,6 +31,7 @@ def test_unknown_command_and_option_name_the_nearest() -> None:
 @pytest.mark.parametrize(
     "command",
     [
+        "show",
         "calibrate",
         "identify",
         "evaluate",

@@ -182,6 +182,7 @@ SECTIONS = [
     "reach",
     "poses",
     "space",
+    "arm",
     "parameters",
     "determined",
     "correlation",

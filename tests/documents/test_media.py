@@ -127,7 +127,7 @@ def test_every_table_has_its_looks_and_its_widths(contents: list[Content]) -> No
 
 
 def test_every_plot_is_drawn_by_one_of_them_at_least() -> None:
-    both = {"histogram", "quantiles", "cloud", "lengths", "tested-lengths"}
+    both = {"arm", "histogram", "quantiles", "cloud", "lengths", "tested-lengths"}
     assert set(ON_PAGE) & set(ON_PAPER) == both
     with pytest.raises(KeyError, match="nonsense"):
         ON_PAPER["nonsense"]

@@ -1,6 +1,7 @@
 """What the docs show is what the program prints today, so that nobody reads yesterday's output."""
 
 import importlib
+import re
 import sys
 
 import pytest
@@ -12,7 +13,10 @@ def tools(root):
     """The modules in tools/, which are no package."""
     sys.path.insert(0, str(root / "tools"))
     try:
-        yield {name: importlib.import_module(name) for name in ("docs_output", "docs_errors", "docs_real_readings")}
+        yield {
+            name: importlib.import_module(name)
+            for name in ("docs_arm_pictures", "docs_output", "docs_errors", "docs_real_readings")
+        }
     finally:
         sys.path.remove(str(root / "tools"))
 
@@ -53,3 +57,12 @@ def test_every_generated_output_is_shown(root):
     pages = "\n".join(path.read_text(encoding="utf-8") for path in (root / "docs").rglob("*.md"))
     for path in [*(root / "docs" / "output").iterdir(), *(root / "docs" / "examples" / "output").iterdir()]:
         assert str(path.relative_to(root)) in pages, f"{path.name} is made but not shown"
+
+
+def test_pictures_of_arms(root, tools):
+    """Numbers of paths apart, which other processors round otherwise, they are what is drawn today."""
+    for name, text in tools["docs_arm_pictures"].arm_pictures().items():
+        shown = (root / "docs" / "pictures" / name).read_text(encoding="utf-8")
+        assert len(shown.splitlines()) == len(text.splitlines()), name
+        numbers = [[float(each) for each in re.findall(r"-?\d+\.?\d*", each)] for each in (shown, text)]
+        assert numbers[0] == pytest.approx(numbers[1], abs=0.11), f"{name}: run tools/docs_arm_pictures.py"

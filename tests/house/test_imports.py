@@ -20,6 +20,7 @@ FLOORS = {
     "arm": 3,
     "artefacts": 4,
     "exchange": 4,
+    "pictures": 4,
     "study": 5,
     "measuring": 6,
     "simulation": 6,

@@ -219,6 +219,11 @@ impl Fitted {
     }
 
     #[getter]
+    fn common_factor(&self) -> Option<f64> {
+        self.inner.common_factor.map(|common| common.factor)
+    }
+
+    #[getter]
     fn identifiability(&self) -> Identifiability {
         Identifiability { inner: self.inner.identifiability.clone() }
     }

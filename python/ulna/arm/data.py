@@ -93,7 +93,7 @@ class ArmData:
 
     @property
     def parameter_units(self) -> list[str]:
-        """Of each of `parameter_names`: "rad", "mm", "1/K" or "rad/(N m)"."""
+        """Of each of `parameter_names`: "rad", "mm", "1/K", "rad/(N m)" or "1"."""
         return self.core.parameter_units
 
     @property

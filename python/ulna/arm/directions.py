@@ -15,7 +15,7 @@ NEXT_TO_NOTHING = 1e-3
 
 
 def unit_of(parameter: str) -> str:
-    """ "rad", "mm", "1/K" or "rad/(N m)", by the parameter's name."""
+    """ "rad", "mm", "1/K", "rad/(N m)" or "1", by the parameter's name."""
     extra = extra_of(parameter)
     if extra is not None:
         return EFFECTS[extra].unit

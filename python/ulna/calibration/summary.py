@@ -13,7 +13,7 @@ import ulna._core as _core
 from ulna.calibration.placements import Figures
 from ulna.study.data import Loss, Method
 
-Unit = Literal["rad", "mm", "1/K", "rad/(N m)"]
+Unit = Literal["rad", "mm", "1/K", "rad/(N m)", "1"]
 Status = Literal["fitted", "held", "not-determined"]
 
 
@@ -40,7 +40,7 @@ class FitSummary:
 
     termination: str
     """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
-    "max-iterations", "poor-minimum"."""
+    "max-iterations", "poor-minimum", "off-scale"."""
     converged: bool
     iterations: int
     evaluations: int
@@ -64,6 +64,8 @@ class FitSummary:
     """Sets of joints that may all count the other way: readings and the arm file do not tell."""
     mirrored_signs: list[list[int]] = field(default_factory=list)
     """Those of them with which the arm is the mirror image of the one found; with the others it is the same arm."""
+    common_factor: float | None = None
+    """Found over drawn, where all lengths of the arm are off the arm file by one factor: a stated size may be wrong."""
     method: Method = "lm"
     """What searched before Levenberg–Marquardt finished: "lm" (nothing), "annealing" or "evolution"."""
     box_evaluations: int = 0

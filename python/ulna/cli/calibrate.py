@@ -23,6 +23,7 @@ def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False,
     """
     from ulna.calibration.calibrate import calibrate as run_calibration
     from ulna.calibration.result import FILES
+    from ulna.calibration.suspects import suspicion
     from ulna.cli import output
     from ulna.cli.printed.calibration import calibration_report
     from ulna.cli.printed.hints import where_to_look
@@ -48,7 +49,7 @@ def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False,
         output.say("Nothing was written: give -o DIR to keep the result.")
     if not result.fit.converged:
         output.say(f"The fit did not converge ({result.fit.termination}): do not use these numbers.")
-        hint = where_to_look(result)
+        hint = where_to_look(result, suspicion(loaded, result))
         if hint:
             output.say(hint)
         raise typer.Exit(1)

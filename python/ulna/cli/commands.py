@@ -17,6 +17,7 @@ from ulna.cli.help import Command, Group, first_paragraph
 COMMANDS = {
     "demo": "ulna.cli.demo",
     "new": "ulna.cli.new",
+    "show": "ulna.cli.show",
     "calibrate": "ulna.cli.calibrate",
     "identify": "ulna.cli.identify",
     "evaluate": "ulna.cli.evaluate",

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from ulna.calibration.evaluate import study_of_arm
-from ulna.calibration.result import Result
 from ulna.documents.content.acceptance import verification
 from ulna.documents.content.artefacts import artefact_rows
-from ulna.documents.content.clouds import Cloud, Quiver, clouds
+from ulna.documents.content.clouds import clouds
 from ulna.documents.content.content import Content
 from ulna.documents.content.distribution import samples
 from ulna.documents.content.environment import environment
@@ -20,6 +19,7 @@ from ulna.documents.content.parameters import observability, parameters
 from ulna.documents.content.provenance import provenance
 from ulna.documents.content.quality import quality_rows, residual_row
 from ulna.documents.content.readings import length_errors, reading_rows
+from ulna.documents.content.standing import standing_arm
 from ulna.documents.sources.cross_validation import CROSS_VALIDATION
 from ulna.documents.sources.evaluation import EVALUATION
 from ulna.documents.sources.laboratory import LABORATORY
@@ -28,7 +28,6 @@ from ulna.documents.sources.source import Calibration, Source, Taken, take
 from ulna.documents.sources.study import find_study
 from ulna.documents.sources.verification import VERIFICATION
 from ulna.ground.arrays import Progress
-from ulna.study.study import Study
 
 T = TypeVar("T")
 
@@ -68,16 +67,19 @@ def gather(
     left_out = _taken(CROSS_VALIDATION, cross_validation, calibration)
     judged = _taken(EVALUATION, evaluation, calibration)
     rows, said = held_out(found, source.study, left_out, judged)
-    over, quiver = _clouds(found, source.study)
+    study_read = None if source.study is None else study_of_arm(source.study, found.arm)
+    over, quiver = ([], None) if study_read is None else clouds(study_read, found.arm, found.residuals)
+    readings = reading_rows(found.residuals)
     at(3)
     content = Content(
         arm=found.arm.name,
         joints=found.arm.n,
         probes=list(found.arm.probes),
+        standing=standing_arm(found.arm, study_read, readings),
         fit=found.fit,
         quality=[*quality_rows("fitted", found.before, found.after), *filter(None, [residual_row(found)]), *rows],
         held_out=said,
-        readings=reading_rows(found.residuals),
+        readings=readings,
         samples=samples(found.residuals, found.artefacts),
         clouds=over,
         quiver=quiver,
@@ -98,11 +100,6 @@ def gather(
         ),
     )
     return replace(content, missing=missing_parts(content, source.missing, bool(rows)))
-
-
-def _clouds(result: Result, study: Study | None) -> tuple[list[Cloud], Quiver | None]:
-    """Nothing where the study is not known: encoder angles stand there."""
-    return ([], None) if study is None else clouds(study_of_arm(study, result.arm), result.arm, result.residuals)
 
 
 def _taken(source: Source[T], path: Path | None, calibration: Calibration) -> Taken[T] | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 
-_MOST_DECIMALS = {"mm": 6, "rad": 9}
-_PLAIN_DECIMALS = {"mm": 4, "rad": 6}
-"""Where no uncertainty is known: 0.1 µm and 1 µrad."""
+_MOST_DECIMALS = {"mm": 6, "rad": 9, "1": 9}
+_PLAIN_DECIMALS = {"mm": 4, "rad": 6, "1": 6}
+"""Where no uncertainty is known: 0.1 µm, 1 µrad, a millionth."""
 
 
 def decimals(u: float | None, unit: str) -> int:

@@ -41,7 +41,7 @@ class Prior:
     """The same for angles."""
 
     def in_unit(self, unit: str) -> tuple[float, float | None]:
-        """u and value for a parameter of this unit: "rad", "mm", "1/K" or "rad/(N m)"."""
+        """u and value for a parameter of this unit: "rad", "mm", "1/K", "rad/(N m)" or "1"."""
         factor = self.length_mm if unit == "mm" else self.angle_rad if unit.startswith("rad") else 1.0
         return self.u * factor, None if self.value is None else self.value * factor
 

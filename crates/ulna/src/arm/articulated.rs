@@ -213,6 +213,19 @@ impl Arm {
         arm.checked()
     }
 
+    /// Whether a parameter is of an effect that is small beside the geometry. (Dimensions of artefacts are no arm's.)
+    pub fn is_small(&self, parameter: usize) -> bool {
+        let mut first = self.geometry_count();
+        for effect in self.effects.all() {
+            let count = effect.values().len();
+            if (first..first + count).contains(&parameter) {
+                return effect.is_small();
+            }
+            first += count;
+        }
+        parameter >= first
+    }
+
     /// The joint that a parameter belongs to, counted from 0; none for a probe's tip.
     pub fn joint_of(&self, parameter: usize) -> Option<usize> {
         if parameter < self.joint_parameter_count() {
@@ -222,7 +235,7 @@ impl Arm {
         for effect in self.effects.all() {
             let count = effect.values().len();
             if (first..first + count).contains(&parameter) {
-                return Some((parameter - first) * effect.joints() / count);
+                return Some(effect.joint_of(parameter - first));
             }
             first += count;
         }
@@ -232,7 +245,8 @@ impl Arm {
     /// Sum of the lengths of all links and the tip, mm: nothing is farther from the base.
     pub fn reach_mm(&self, probe: usize) -> f64 {
         let links: f64 = self.joints.iter().map(|j| j.a_mm.hypot(j.d_mm)).sum();
-        links + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
+        let beside = self.effects.base_offset.as_ref().map_or(0.0, |base| base.mm[0].hypot(base.mm[1]));
+        beside + links + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
     }
 }
 

@@ -15,7 +15,8 @@ pub use articulated::Arm;
 #[cfg(test)]
 pub(crate) use articulated::samples;
 pub use effects::{
-    Array, Backlash, Body, Compliance, Effect, Effects, Expansion, Harmonics, Lost, Seen, Stated, Unseen,
+    Array, Backlash, BaseOffset, BaseTilt, Body, Compliance, Coupling, Effect, Effects, Expansion, Harmonics, Lost,
+    Seen, Stated, Unseen,
 };
 pub use joint::{Joint, JointModel};
 pub use probe::Probe;

@@ -95,6 +95,7 @@ impl WithSimd for LookOp<'_> {
         let LookOp { chain, poses, encoder_rad, start, rows, at } = self;
         let AtTips { probe_mm, p_mm, sigma, moved, scratch } = at;
         let n = encoder_rad.len();
+        let mut along = vec![Lanes::splat(simd, 0.0); n];
         for v in 0..rows.div_ceil(S::F64_LANES) {
             let k = start / S::F64_LANES + v;
             let tip = [0, 1, 2].map(|j| Lanes::load(simd, &probe_mm[j], v));
@@ -113,19 +114,28 @@ impl WithSimd for LookOp<'_> {
                     [axis(0), axis(1), axis(2)],
                     #[inline(always)]
                     |column, per_rad| {
-                        let Some(encoder) = chain.encoder_of(column) else { return };
-                        let along = per_rad * Lanes::splat(simd, encoder_rad[encoder]);
-                        let first = component * (component + 1) / 2;
-                        for other in 0..component {
-                            let known = Lanes::load(simd, moved, other * n + encoder);
-                            sums[first + other] = known.mul_add(along, sums[first + other]);
-                        }
-                        sums[first + component] = along.mul_add(along, sums[first + component]);
-                        if component < 2 {
-                            along.store(moved, component * n + encoder);
+                        if let Some(encoder) = chain.encoder_of(column) {
+                            along[encoder] = per_rad;
                         }
                     },
                 );
+                chain.by_encoders(
+                    &mut along,
+                    #[inline(always)]
+                    |own, of_other, ratio| of_other.mul_add(Lanes::splat(simd, ratio), own),
+                );
+                let first = component * (component + 1) / 2;
+                for (encoder, (&along, &sigma)) in along.iter().zip(encoder_rad).enumerate() {
+                    let along = along * Lanes::splat(simd, sigma);
+                    for other in 0..component {
+                        let known = Lanes::load(simd, moved, other * n + encoder);
+                        sums[first + other] = known.mul_add(along, sums[first + other]);
+                    }
+                    sums[first + component] = along.mul_add(along, sums[first + component]);
+                    if component < 2 {
+                        along.store(moved, component * n + encoder);
+                    }
+                }
             }
             (0..6).for_each(|k| sums[k].store(&mut sigma[k], v));
         }

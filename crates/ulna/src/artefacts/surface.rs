@@ -147,9 +147,11 @@ impl<S: Shape<U>, const U: usize> Observed<1> for Surface<S, U> {
             for start in (0..variance.len()).step_by(TILE) {
                 tile.fill(&group.touches, chain, &normals, start, &mut scratch);
                 for (i, variance) in variance[start..].iter_mut().take(TILE).enumerate() {
-                    for (encoder, sigma) in noise.encoder_rad.iter().enumerate() {
-                        *variance += (sigma * tile.values(0, chain.encoder_column(encoder))[i]).powi(2);
-                    }
+                    let by_turn = |encoder: usize| tile.values(0, chain.encoder_column(encoder))[i];
+                    let mut along: Vec<f64> = (0..noise.encoder_rad.len()).map(by_turn).collect();
+                    chain.by_encoders(&mut along, |own, of_other, ratio| own + of_other * ratio);
+                    *variance +=
+                        along.iter().zip(&noise.encoder_rad).map(|(along, s)| (s * along).powi(2)).sum::<f64>();
                 }
             }
         }

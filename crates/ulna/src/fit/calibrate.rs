@@ -4,6 +4,8 @@ use crate::arm::Arm;
 use crate::artefacts::{Unweighted, Weighing};
 use crate::error::{Error, Result};
 use crate::fit::robust::Standing;
+pub use crate::fit::scale::CommonFactor;
+use crate::fit::scale::common_factor;
 use crate::fit::settle::least_scatter;
 use crate::fit::solve::{ASSUMED_SCATTER_MM, prepare};
 pub use crate::fit::solve::{Options, SearchReason, Solution, Start, Undecided, solve, solve_from};
@@ -19,6 +21,7 @@ use crate::solver::LeastSquares;
 use crate::solver::covariance::covariance;
 use crate::solver::decomposition::Decomposition;
 use crate::solver::gram::Cost;
+use crate::solver::lm::Termination;
 use crate::solver::triangle::Triangle;
 
 /// A calibrated arm, how it was found, and how well it is known.
@@ -36,6 +39,8 @@ pub struct Fitted {
     pub free: Vec<usize>,
     /// Symmetries that brought the arm back near the nominal.
     pub folded: Vec<String>,
+    /// By what all lengths are off their drawing, where one factor tells it.
+    pub common_factor: Option<CommonFactor>,
     /// What the readings determine at the solution.
     pub identifiability: Identifiability,
     /// Over the free parameters, row-major; NaN where nothing is left to estimate the noise from.
@@ -297,8 +302,16 @@ pub fn fit_from(
     let considered = problem.considered_u(free);
     problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);
+    let identifiability = identifiability(problem, &arm, free, &solution.pins, &judged, options.known, variance.sqrt());
+    let clear = free.iter().zip(&identifiability.in_lost).filter(|(_, lost)| !**lost);
+    let determined: Vec<usize> = clear.map(|(&j, _)| j).collect();
+    let common_factor = common_factor(problem, &start, &solution.parameters, &determined, options.known);
+    if solution.report.termination.converged() && common_factor.is_some_and(|common| common.contradicts) {
+        solution.report.termination = Termination::OffScale;
+    }
     Ok(Fitted {
-        identifiability: identifiability(problem, &arm, free, &solution.pins, &judged, options.known, variance.sqrt()),
+        identifiability,
+        common_factor,
         covariance: covariance(&judged.decomposition, &judged.triangle, variance, &considered),
         counted: solution.factors.as_ref().map(|factors| squared(factors)),
         arm,

@@ -6,6 +6,7 @@ pub mod robust;
 pub mod solve;
 pub mod symmetry;
 
+mod scale;
 mod search;
 mod settle;
 mod signs;

@@ -124,8 +124,8 @@ pub fn solve_from(
     let start = problem.parameters();
     prepare(problem);
     problem.weigh(&start, Weighing::Even);
-    // what an arm does beyond its geometry is small: it is sought from where the geometry is found
-    let geometry: Vec<usize> = free.iter().copied().filter(|&j| j < problem.arm().geometry_count()).collect();
+    // most of what an arm does beyond its geometry is small: it is sought from where the geometry is found
+    let geometry: Vec<usize> = free.iter().copied().filter(|&j| !problem.arm().is_small(j)).collect();
     let (mut geometry_pins, gram) = pins(problem, &geometry, &start, monitor)?;
     let cost_start = gram.cost();
     let plan = |throw| Plan {

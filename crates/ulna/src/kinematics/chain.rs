@@ -1,9 +1,8 @@
 //! An arm's geometry, and what it does beyond it, as the kernels use them.
 
 use super::carried::Carried;
-use crate::arm::effects::{Compliance, Expansion, FromStated};
+use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Effects, JointModel};
-use std::ops::Range;
 
 /// One joint's numbers as the kernels use them.
 #[derive(Debug, Clone, Copy)]
@@ -33,32 +32,40 @@ pub struct Chain {
     pub(super) columns: EffectColumns,
     /// what the arm carries, if that bends it
     pub(super) carried: Option<Carried>,
+    /// where its first axis stands, if not at z of the base frame
+    pub(super) base: Option<Base>,
 }
 
 /// Where the derivatives of effects stand, counted from those of the first.
 #[derive(Debug, Clone, Default)]
 pub(super) struct EffectColumns {
-    /// of each effect that adds to the angles of encoders: the first, and how many a joint has
-    pub(super) on_encoder: Vec<(usize, usize)>,
+    /// of each joint, those of effects that add to the angle of its encoder
+    of_encoder: Vec<Vec<usize>>,
     /// all of them
     pub(super) on_encoders: usize,
     pub(super) expansion: usize,
     pub(super) compliance: usize,
+    pub(super) base_tilt: usize,
+    pub(super) base_offset: usize,
     count: usize,
 }
 
 impl EffectColumns {
-    fn new(effects: &Effects) -> EffectColumns {
-        let (mut on_encoder, mut first) = (vec![], 0);
+    fn new(effects: &Effects, encoders: usize) -> EffectColumns {
+        let (mut of_encoder, mut first) = (vec![vec![]; encoders], 0);
         for effect in effects.on_encoder() {
-            on_encoder.push((first, effect.shapes_of_joint()));
+            for (joint, own) in of_encoder.iter_mut().enumerate() {
+                own.extend(effect.of_joint(joint).map(|value| first + value));
+            }
             first += effect.values().len();
         }
         EffectColumns {
-            on_encoder,
+            of_encoder,
             on_encoders: first,
             expansion: effects.start_of(Expansion::KIND),
             compliance: effects.start_of(Compliance::KIND),
+            base_tilt: effects.start_of(BaseTilt::KIND),
+            base_offset: effects.start_of(BaseOffset::KIND),
             count: effects.count(),
         }
     }
@@ -66,10 +73,7 @@ impl EffectColumns {
     /// Those of one joint's encoder.
     #[inline(always)]
     pub(super) fn of_encoder(&self, joint: usize) -> impl Iterator<Item = usize> {
-        let own = move |&(first, count): &(usize, usize)| -> Range<usize> {
-            first + joint * count..first + (joint + 1) * count
-        };
-        self.on_encoder.iter().flat_map(own)
+        self.of_encoder[joint].iter().copied()
     }
 }
 
@@ -103,8 +107,9 @@ impl Chain {
         Chain {
             links: links.chain((!arm.has_full_last_link()).then_some(bare)).collect(),
             effects: arm.effects().clone(),
-            columns: EffectColumns::new(arm.effects()),
+            columns: EffectColumns::new(arm.effects(), arm.encoders()),
             carried: arm.effects().compliance.as_ref().map(Carried::new),
+            base: Base::of(arm.effects().base_tilt.as_ref(), arm.effects().base_offset.as_ref()),
         }
     }
 
@@ -121,6 +126,7 @@ impl Chain {
             }
         }
         self.effects.set(effects);
+        self.base = Base::of(self.effects.base_tilt.as_ref(), self.effects.base_offset.as_ref());
     }
 
     /// Number of encoders.
@@ -152,6 +158,19 @@ impl Chain {
     /// The column that says how the tip follows an encoder, but for the sign.
     pub(crate) fn encoder_column(&self, encoder: usize) -> usize {
         if 4 * encoder < self.joint_parameter_count() { 4 * encoder } else { self.turn_column() }
+    }
+
+    /// How the tip follows every encoder, from how it follows every turn: (encoders) numbers, or as many vectors of them,
+    /// each as in the [`encoder_column`](Self::encoder_column), in place, but for the sign.
+    #[inline(always)]
+    pub(crate) fn by_encoders<T: Copy>(&self, by_turn: &mut [T], add: impl Fn(T, T, f64) -> T) {
+        let Some(coupling) = &self.effects.coupling else { return };
+        // the derivative by theta0 of a joint with a link is minus that by its turn
+        let sense = |i: usize| if self.links[i].bare { self.links[i].sign } else { -self.links[i].sign };
+        let given: Vec<T> = by_turn.to_vec();
+        for (joint, other, ratio) in coupling.pairs() {
+            by_turn[other] = add(by_turn[other], given[joint], sense(joint) * sense(other) * ratio);
+        }
     }
 
     /// Which encoder a column is that of, if it is one.

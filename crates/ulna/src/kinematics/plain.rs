@@ -1,7 +1,7 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
 use super::pose::Pose;
-use crate::arm::effects::{Compliance, Expansion, FromStated};
+use crate::arm::effects::{BaseOffset, BaseTilt, Compliance, Expansion, FromStated, base};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -19,9 +19,9 @@ fn step(joint: &Joint, turn_rad: f64, stretch: f64) -> Isometry3<f64> {
     }
 }
 
-/// Frames `t_base_joint` of every joint before its turn and the probe's frame last, n + 1 frames, for given turns.
-fn chained(arm: &Arm, turns_rad: &[f64], stretches: &[f64]) -> Vec<Isometry3<f64>> {
-    let mut t_base = Isometry3::identity();
+/// Frames `t_base_joint` of every joint before its turn and the probe's frame last, n + 1 frames, for given turns, the
+/// first at `t_base`.
+fn chained(arm: &Arm, mut t_base: Isometry3<f64>, turns_rad: &[f64], stretches: &[f64]) -> Vec<Isometry3<f64>> {
     let mut all = vec![t_base];
     for ((joint, &turn), &stretch) in arm.joints().iter().zip(turns_rad).zip(stretches) {
         t_base *= step(joint, turn, stretch);
@@ -66,7 +66,8 @@ impl<'a> Posed<'a> {
             rigid[i] + added + given
         };
         let turns_rad: Vec<f64> = (0..n).map(turn).collect();
-        let frames = chained(arm, &turns_rad, &stretches);
+        let t_base = base(effects.base_tilt.as_ref(), effects.base_offset.as_ref());
+        let frames = chained(arm, t_base, &turns_rad, &stretches);
         let tip_mm = Vector3::from(arm.probes()[probe].tip_mm) * stretches[n - 1];
         let p_tip = (frames[n] * Point3::from(tip_mm)).coords;
         Posed { arm, pose, turns_rad, stretches, frames, p_tip, tip_mm, weight }
@@ -132,7 +133,7 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     let mut at = arm.geometry_count();
     for effect in effects.on_encoder() {
         for (i, sign) in arm.signs().enumerate() {
-            for shape in effect.shapes(posed.pose.encoder(i)) {
+            for shape in effect.shapes(i, posed.pose.encoder(i)) {
                 jacobian.set_column(at, &(posed.by_turn(i) * sign * shape));
                 at += 1;
             }
@@ -151,18 +152,36 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     if let Some(weight) = &posed.weight {
         (0..n).for_each(|i| jacobian.set_column(first + i, &(posed.by_turn(i) * weight.moment_nm(i))));
     }
+    if let Some(tilt) = &effects.base_tilt {
+        let first = arm.geometry_count() + effects.start_of(BaseTilt::KIND);
+        let from_base = posed.p_tip - posed.frames[0].translation.vector;
+        for (k, axis) in tilt.axes().iter().enumerate() {
+            jacobian.set_column(first + k, &axis.cross(&from_base));
+        }
+    }
+    if effects.base_offset.is_some() {
+        let first = arm.geometry_count() + effects.start_of(BaseOffset::KIND);
+        (0..2).for_each(|k| jacobian.set_column(first + k, &Vector3::ith(k, 1.0)));
+    }
     jacobian
 }
 
 /// ∂p/∂q of one pose, 3 × n, mm/rad.
 pub fn encoder_jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matrix3xX<f64> {
     let posed = Posed::new(arm, probe, pose.into());
-    let columns = arm.signs().enumerate().map(|(i, sign)| {
+    // a moment follows the turn that the encoder says, without what is added to it
+    let given = |i: usize| posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
+    let signs: Vec<f64> = arm.signs().collect();
+    let columns = signs.iter().enumerate().map(|(i, &sign)| {
         let slope = arm.effects().slope(i, posed.pose.encoder(i));
-        let given = posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
-        sign * (posed.by_turn(i) * (1.0 + slope) + given)
+        sign * (posed.by_turn(i) * (1.0 + slope) + given(i))
     });
-    Matrix3xX::from_columns(&columns.collect::<Vec<_>>())
+    let mut jacobian = Matrix3xX::from_columns(&columns.collect::<Vec<_>>());
+    for (joint, other, ratio) in arm.effects().coupling.iter().flat_map(|coupling| coupling.pairs()) {
+        let with = jacobian.column(other) + posed.by_turn(joint) * (signs[joint] * ratio);
+        jacobian.set_column(other, &with);
+    }
+    jacobian
 }
 
 /// What the arm carries, at turns that its weight has not changed yet.
@@ -179,7 +198,8 @@ struct Weight<'a> {
 impl<'a> Weight<'a> {
     fn new(arm: &'a Arm, turns_rad: &[f64]) -> Weight<'a> {
         let n = arm.encoders();
-        let frames = chained(arm, turns_rad, &vec![1.0; n]);
+        // gravity is told in the frame of the first axis
+        let frames = chained(arm, Isometry3::identity(), turns_rad, &vec![1.0; n]);
         let mut weight = Weight {
             arm,
             turns_rad: turns_rad.to_vec(),

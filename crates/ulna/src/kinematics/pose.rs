@@ -23,9 +23,9 @@ impl Pose<'_> {
     }
 
     /// What a joint's encoder said.
-    pub(crate) fn encoder(&self, joint: usize) -> Encoder {
+    pub(crate) fn encoder(&self, joint: usize) -> Encoder<'_> {
         let approach = self.conditions.approach.get(joint).copied().unwrap_or(0.0);
-        Encoder { q_rad: self.q_rad[joint], approach }
+        Encoder { q_rad: self.q_rad[joint], all_rad: self.q_rad, approach }
     }
 }
 

@@ -192,6 +192,11 @@ impl<S: Simd> EncoderLanes<S> for EncoderOf<'_, S> {
     fn approach(&self) -> Lanes<S> {
         self.poses.conditions.approach(self.simd, self.joint, self.k)
     }
+
+    #[inline(always)]
+    fn angle(&self, joint: usize) -> Lanes<S> {
+        self.poses.q_rad.load(self.simd, joint, self.k)
+    }
 }
 
 struct SinCosOp<'a> {

@@ -118,7 +118,14 @@ impl Problem {
         let seen = self.arm.effects().all().any(|effect| effect.sees_the_base_turn());
         let turn = (!seen).then_some(0);
         let lift = (self.arm.joints()[0].model == JointModel::Dh).then_some(3);
-        turn.into_iter().chain(lift).collect()
+        let mut first = self.arm.geometry_count();
+        let mut stands = vec![];
+        for effect in self.arm.effects().all() {
+            let next = first + effect.values().len();
+            stands.extend((first..next).filter(|_| effect.of_base()));
+            first = next;
+        }
+        turn.into_iter().chain(lift).chain(stands).collect()
     }
 
     /// How fast every fitted dimension grows with the arm, where no length is known: parameter and how much.

@@ -23,6 +23,8 @@ pub enum Termination {
     /// Ended at residuals far beyond what the size of the arm explains, and a search found nothing better; or, with
     /// readings that know no length, at an arm whose joints hardly move its tip.
     PoorMinimum,
+    /// Reached, but every length of the arm is off its start by one factor that no drawing could be off by.
+    OffScale,
 }
 
 impl Termination {
@@ -36,12 +38,16 @@ impl Termination {
             Termination::NoProgress => "no-progress",
             Termination::MaxIterations => "max-iterations",
             Termination::PoorMinimum => "poor-minimum",
+            Termination::OffScale => "off-scale",
         }
     }
 
-    /// Whether the minimum was reached.
+    /// Whether a minimum was reached that can be believed.
     pub fn converged(self) -> bool {
-        !matches!(self, Termination::NoProgress | Termination::MaxIterations | Termination::PoorMinimum)
+        !matches!(
+            self,
+            Termination::NoProgress | Termination::MaxIterations | Termination::PoorMinimum | Termination::OffScale
+        )
     }
 }
 

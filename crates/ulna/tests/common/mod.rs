@@ -5,7 +5,10 @@ pub mod cases;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::arm::{Arm, Backlash, Body, Compliance, Effects, Expansion, Harmonics, Joint, JointModel, Probe};
+use ulna::arm::{
+    Arm, Backlash, BaseOffset, BaseTilt, Body, Compliance, Coupling, Effects, Expansion, Harmonics, Joint, JointModel,
+    Probe,
+};
 use ulna::artefacts::Noise;
 use ulna::kinematics::{Angles, Conditions, tip_mm};
 
@@ -57,13 +60,29 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
     Effects {
         harmonics: Some(harmonics),
         backlash: Some(Backlash { rad: (0..n).map(|_| small(0.05)).collect() }),
+        coupling: Some(any_coupling(n, &mut small)),
         expansion: Some(Expansion { per_kelvin: (0..n).map(|_| small(1e-3)).collect() }),
         compliance: Some(Compliance {
             rad_per_nm: (0..n).map(|_| small(5e-3)).collect(),
             bodies: (0..n).map(|_| body(&mut small)).collect(),
             gravity: [small(1.0), small(1.0), -1.5],
         }),
+        base_tilt: Some(BaseTilt { rad: [small(1.0), small(1.0)], joints: n }),
+        base_offset: Some(BaseOffset { mm: [small(50.0), small(50.0)], joints: n }),
     }
+}
+
+/// Every third joint turns with its neighbour, and the last with the two before it.
+fn any_coupling(n: usize, small: &mut impl FnMut(f64) -> f64) -> Coupling {
+    let others: Vec<Vec<usize>> = (0..n)
+        .map(|joint| match joint {
+            _ if joint + 1 == n => (joint.saturating_sub(2)..joint).collect(),
+            _ if joint % 3 == 2 => vec![joint - 1],
+            _ => vec![],
+        })
+        .collect();
+    let count = others.iter().map(Vec::len).sum();
+    Coupling { others, ratios: (0..count).map(|_| small(1.0)).collect() }
 }
 
 /// Temperatures above 20 °C, one for each joint of each pose.

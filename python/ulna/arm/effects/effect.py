@@ -40,6 +40,8 @@ class Effect(ABC):
     """What may be of a parameter before anybody has measured."""
     prior_u: ClassVar[float | None] = None
     """Standard uncertainty of a parameter where the study states none; None: nothing is known beforehand."""
+    of_first: ClassVar[bool] = False
+    """Whether only the first joint has it: where the arm stands, of which no length depends."""
     needs: ClassVar[Condition | None] = None
     """On which condition of a pose it depends."""
     whose: ClassVar[str] = "joints"
@@ -90,6 +92,11 @@ class Effect(ABC):
         """What is judged by readings left out: the whole of it (None), or a part by its number, with the patterns of
         what belongs to it. orders: of harmonics."""
         return [(None, self.patterns)]
+
+    def ratios(self, joints: Sequence[Any]) -> list[tuple[int, int, float]]:
+        """What of it is a constant share of other encoders in a joint's turn: (joint, encoder, ratio), counted from 0.
+        A picture of the arm has that; what else an effect does is too small to be seen in one."""
+        return []
 
     def check_joints(self, joints: Sequence[Any], path: Path) -> None:
         """Whether it makes sense in an arm file with such joints. Raises UlnaInputError."""

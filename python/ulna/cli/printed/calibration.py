@@ -15,6 +15,7 @@ from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions
 from ulna.cli.printed.outliers import far_off
+from ulna.cli.printed.scale import common_factor
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import decimals, figure_mm, fixed, quantity, uncertainty
 
@@ -26,6 +27,7 @@ _ENDINGS = {
     "no-progress": "NOT converged: no step made progress",
     "max-iterations": "NOT converged: the allowed iterations were used up",
     "poor-minimum": "NOT converged: the fit ended in a poor minimum, and so did the search",
+    "off-scale": "NOT to be believed: the readings are met, but every length is off the arm file by one factor",
 }
 
 _METHODS = {"annealing": "simulated annealing", "evolution": "an evolutionary search"}
@@ -35,6 +37,7 @@ def calibration_report(result: Result) -> list[RenderableType]:
     """All of `ulna calibrate`."""
     parts: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
     parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
+    parts += [Text(said) for said in filter(None, [common_factor(result)])]
     rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
     parts += ["", before_after("Before and after, on the fitted readings", result.before, result.after, [rms])]
     parts += ["", *parameter_tables(result.parameters)]

@@ -7,6 +7,8 @@ import polars as pl
 
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary
+from ulna.calibration.suspects import Suspicion
+from ulna.cli.printed.scale import beyond_reach
 from ulna.ground.digits import figure_mm
 
 #: neighbours in the file err alike where their residuals correlate by more than this many standard deviations
@@ -15,8 +17,8 @@ _ALIKE = 4.0
 _FEWEST = 8
 
 
-def where_to_look(result: Result) -> str:
-    """The reading that fits worst, and what the ending or the rows suggest."""
+def where_to_look(result: Result, suspected: Suspicion | None = None) -> str:
+    """The reading that fits worst, and what the ending or the rows suggest; suspected: what would explain them."""
     residuals = result.residuals
     if not len(residuals):
         return ""
@@ -27,8 +29,17 @@ def where_to_look(result: Result) -> str:
             "or start nearer."
         )
     moved = _taken_as_one_standing(residuals)
-    if result.fit.termination == "poor-minimum" and not moved:
+    wrong_size = result.fit.common_factor is not None or bool(beyond_reach(result))
+    if suspected is not None:
+        hints.append(f"They are met to {figure_mm(suspected.rms_mm)} mm, rms, {suspected.if_so}. {suspected.to_do}")
+    if result.fit.termination == "poor-minimum" and not moved and not wrong_size and suspected is None:
         hints.append(_if_that_is_its_noise(result.fit))
+    if result.fit.termination == "off-scale":
+        hints.append(
+            "Correct the size or the arm file and calibrate again; if its lengths are only guesses, say how far off "
+            "they may be: [fit] known_length."
+        )
+    hints += [said for said in [beyond_reach(result)] if said]
     worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
     hints.append(
         f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "

@@ -23,6 +23,7 @@ from ulna.documents.content.parameters import Observability, Parameters
 from ulna.documents.content.provenance import Provenance
 from ulna.documents.content.quality import QualityRow
 from ulna.documents.content.readings import Lengths, ReadingRows
+from ulna.documents.content.standing import StandingArm
 from ulna.documents.laboratory.file import Laboratory
 from ulna.documents.languages.said import Said
 
@@ -34,6 +35,7 @@ class Content:
     arm: str
     joints: int
     probes: list[str]
+    standing: StandingArm
     fit: FitSummary
     quality: list[QualityRow]
     held_out: list[Said]

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ulna.documents.content.content import Content
+from ulna.documents.html.arm_plot import arm_plot
 from ulna.documents.html.parameter_plots import correlation_plot, length_plot, singular_plot
-from ulna.documents.html.plots import Plot
+from ulna.documents.html.plots import Plot, Still
 from ulna.documents.html.residual_plots import cloud_plot, histogram_plot, quantile_plot
 from ulna.documents.html.space_plots import pose_plot, space_plot
 from ulna.documents.html.tested_plots import tested_lengths_plot
@@ -16,7 +17,8 @@ from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Drawing
 
 #: kind → (drawing, content, words) → plot; its caption is what must be said of what is shown
-DRAWN: dict[str, Callable[[Drawing, Content, Words], Plot]] = {
+DRAWN: dict[str, Callable[[Drawing, Content, Words], Plot | Still]] = {
+    "arm": lambda each, _, words: arm_plot(each.name, each.of, words),
     "histogram": lambda each, _, words: histogram_plot(each.name, each.of, words),
     "quantiles": lambda each, _, words: quantile_plot(each.name, each.of, words),
     "cloud": lambda each, content, words: cloud_plot(each.name, each.of, content.readings, words),
@@ -29,7 +31,7 @@ DRAWN: dict[str, Callable[[Drawing, Content, Words], Plot]] = {
 }
 
 
-def draw(drawing: Drawing, content: Content, words: Words) -> Plot:
+def draw(drawing: Drawing, content: Content, words: Words) -> Plot | Still:
     """With the whole caption. Errors: KeyError for a kind that this page cannot draw."""
     plot = DRAWN[drawing.kind](drawing, content, words)
     return replace(plot, caption=joined([drawing.caption, plot.caption], " "))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import html
 import json
 from collections.abc import Callable
@@ -65,3 +67,8 @@ def json_in_script(value: Any) -> str:
     for sign in "<>&\u2028\u2029":
         found = found.replace(sign, f"\\u{ord(sign):04x}")
     return found
+
+
+def digest(script: str) -> str:
+    """As a Content-Security-Policy knows a script: base64 of its SHA-256."""
+    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import base64
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from markupsafe import Markup
 
 from ulna.documents.content.content import Content
+from ulna.documents.html.arm_plot import rules
 from ulna.documents.html.blocks import Legend, asset, cloud_legend, environment, macro_of
 from ulna.documents.html.drawings import draw
-from ulna.documents.html.markup import json_in_script
-from ulna.documents.html.plots import Plot
+from ulna.documents.html.markup import digest, json_in_script
+from ulna.documents.html.plots import Plot, Still
 from ulna.documents.languages.words import Words
 from ulna.documents.sections import artefacts as touched
 from ulna.documents.sections import (
@@ -62,8 +61,8 @@ def render(content: Content, language: str = "en") -> str:
         words=words,
         arm=content.arm,
         made=content.provenance,
-        policy=POLICY.format(scripts=" ".join(f"'sha256-{_digest(script)}'" for script in scripts)),
-        style=Markup(asset("style.css")),
+        policy=POLICY.format(scripts=" ".join(f"'sha256-{digest(script)}'" for script in scripts)),
+        style=Markup(asset("style.css") + rules()),
         sections={key: found for key, found in _sections(content, words).items() if found},
         set=lambda block: getattr(macros, macro_of(block))(block),
         plots_data=lambda: Markup(json_in_script([_data(plot) for plot in drawn])),
@@ -93,6 +92,7 @@ def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
         "reach": [*_clouds(over["reach"], words), *lacks("study", "temperature")],
         "poses": plots.poses(content),
         "space": [*plots.space(content), *lacks("study", "quiver")],
+        "arm": plots.arm(content, words),
         "parameters": parameters.parameters(content, words),
         "determined": determined.determined(content, words),
         "correlation": observability.correlation(content, words),
@@ -129,8 +129,10 @@ def _clouds(drawings: Sequence[blocks.Drawing], words: Words) -> Blocks:
     return [cloud_legend(words), blocks.Drawings(drawings, narrow=True)] if drawings else []
 
 
-def _drawn(plot: Plot, drawn: list[Plot]) -> Plot:
-    drawn.append(plot)
+def _drawn(plot: Plot | Still, drawn: list[Plot]) -> Plot | Still:
+    """What the script has to draw is kept."""
+    if isinstance(plot, Plot):
+        drawn.append(plot)
     return plot
 
 
@@ -144,8 +146,3 @@ def _plotly() -> str:
 
     source: str = get_plotlyjs()
     return source.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def _digest(script: str) -> str:
-    """As a Content-Security-Policy knows a script: base64 of its SHA-256."""
-    return base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from ulna.documents.languages.text import Text
@@ -34,6 +35,21 @@ class Plot:
     height_px: int = 340
     solid: bool = False
     """Three-dimensional: drawn by WebGL."""
+
+    @property
+    def place(self) -> Markup:
+        """Where the page's script draws it."""
+        return Markup('<div class="plot" id="plot-{}" style="height:{}px"></div>').format(self.name, self.height_px)
+
+
+@dataclass(frozen=True)
+class Still:
+    """A picture that no script draws."""
+
+    name: str
+    place: Markup
+    """SVG, in colours of the page's style."""
+    caption: Text = ()
 
 
 def numbers(values: ArrayLike) -> list[float | None]:

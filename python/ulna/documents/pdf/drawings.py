@@ -7,7 +7,7 @@ from collections.abc import Callable
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
-from ulna.documents.pdf import parameter_plots, plots
+from ulna.documents.pdf import arm_plot, parameter_plots, plots
 from ulna.documents.sections.blocks import Drawing
 
 Drawn = tuple[str, list[Text]]
@@ -15,6 +15,7 @@ Drawn = tuple[str, list[Text]]
 
 #: kind → (drawing, content, words) → plot
 DRAWN: dict[str, Callable[[Drawing, Content, Words], Drawn]] = {
+    "arm": lambda each, _, words: (arm_plot.arm(each.of), []),
     "histogram": lambda each, _, words: (plots.histogram(each.of, words), []),
     "quantiles": lambda each, _, words: plots.quantiles(each.of, words),
     "cloud": lambda each, content, words: plots.cloud(each.of, content.readings, words),

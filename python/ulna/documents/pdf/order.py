@@ -98,6 +98,7 @@ def _plots(content: Content, words: Words) -> list[Part]:
     if over_joints:
         joints = [blocks.Paragraph(said, "note"), blocks.Drawings(over_joints, narrow=True)]
     return [
+        _part("arm", words, plots.arm(content, words)),
         _part("distribution", words, plots.distributions(content, words) if content.samples else []),
         _part("joints", words, [*joints, *lacking.lacking(content, words, "study", "joint")]),
         Part(words("paper.moved"), plots.ratios(content, words)),

@@ -83,6 +83,11 @@ def poses(content: Content) -> list[Block]:
     return [Drawings([Drawing("poses", "poses", content.readings)])]
 
 
+def arm(content: Content, words: Words) -> list[Block]:
+    """The arm itself, in a pose of the readings."""
+    return [Drawings([Drawing("arm", "arm", content.standing, words.say(content.standing.said))])]
+
+
 def space(content: Content) -> list[Block]:
     """Residual vectors at the tips."""
     return [] if content.quiver is None else [Drawings([Drawing("space", "space", content.quiver)])]

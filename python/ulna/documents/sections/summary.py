@@ -46,6 +46,8 @@ def counts(content: Content, words: Words) -> list[Block]:
     for joints in fit.undecided_signs:
         key = "summary.mirror" if joints in fit.mirrored_signs else "summary.signs"
         said.append(words(key, joints=own(", ".join(map(str, joints)))))
+    if fit.common_factor is not None:
+        said.append(words("summary.common-factor", factor=own(f"{fit.common_factor:.4g}")))
     return [Listed(said)]
 
 

@@ -1,7 +1,9 @@
 //! All effects: one row each.
 
 use super::backlash::Backlash;
+use super::base::{BaseOffset, BaseTilt};
 use super::compliance::Compliance;
+use super::coupling::Coupling;
 use super::effect::{Effect, FromStated};
 use super::expansion::Expansion;
 use super::harmonics::Harmonics;
@@ -63,9 +65,10 @@ macro_rules! registry {
             ) {
                 let mut first = 0;
                 $(if let Some(effect) = &self.$encoder {
-                    let (values, own) = (effect.values(), joint * effect.shapes_of_joint());
+                    let (values, own) = (effect.values(), effect.of_joint(joint).start);
                     effect.shapes_in_lanes(
                         simd,
+                        joint,
                         at,
                         #[inline(always)]
                         |number, shape| each(first + own + number, values[own + number], shape),
@@ -94,12 +97,18 @@ registry! {
         harmonics: Harmonics,
         /// Play between joints and their encoders.
         backlash: Backlash,
+        /// Joints that turn with other joints' encoders.
+        coupling: Coupling,
     }
     elsewhere {
         /// Links that grow with temperature.
         expansion: Expansion,
         /// Joints that bend under gravity.
         compliance: Compliance,
+        /// The first axis leans in the stated frame.
+        base_tilt: BaseTilt,
+        /// And stands beside its origin.
+        base_offset: BaseOffset,
     }
 }
 
@@ -147,18 +156,18 @@ impl Effects {
 
     /// What is added to a joint's encoder angle, rad.
     pub(crate) fn added_rad(&self, joint: usize, at: Encoder) -> f64 {
-        self.sum(joint, |effect| effect.shapes(at))
+        self.sum(joint, |effect| effect.shapes(joint, at))
     }
 
     /// Derivative of [`Self::added_rad`] with respect to the encoder angle.
     pub(crate) fn slope(&self, joint: usize, at: Encoder) -> f64 {
-        self.sum(joint, |effect| effect.slopes(at))
+        self.sum(joint, |effect| effect.slopes(joint, at))
     }
 
     fn sum(&self, joint: usize, of: impl Fn(&dyn OnEncoder) -> Vec<f64>) -> f64 {
         let one = |effect: &dyn OnEncoder| -> f64 {
             let own = of(effect);
-            effect.values()[joint * own.len()..].iter().zip(&own).map(|(value, shape)| value * shape).sum()
+            effect.values()[effect.of_joint(joint)].iter().zip(&own).map(|(value, shape)| value * shape).sum()
         };
         self.on_encoder().map(one).sum()
     }
@@ -166,7 +175,8 @@ impl Effects {
     pub(in crate::arm) fn check(&self, joints: usize) -> Result<()> {
         for effect in self.all() {
             effect.check()?;
-            if effect.values().len() != joints * effect.suffixes().len() {
+            let parameters: usize = (0..effect.joints()).map(|joint| effect.suffixes(joint).len()).sum();
+            if effect.joints() != joints || effect.values().len() != parameters {
                 return Err(Error::Shape {
                     what: format!("the joints of effect {:?}", effect.kind()),
                     got: effect.joints(),

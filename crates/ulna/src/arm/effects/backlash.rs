@@ -8,6 +8,7 @@ use crate::arm::unit::Unit;
 use crate::error::Result;
 use crate::simd::Lanes;
 use pulp::Simd;
+use std::ops::Range;
 
 /// `q_i + b_i/2 · s_i` in place of each encoder angle `q_i`, with `s_i` the [approach](crate::kinematics::Conditions).
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +22,11 @@ impl Effect for Backlash {
         Self::KIND
     }
 
-    fn suffixes(&self) -> Vec<String> {
+    fn joints(&self) -> usize {
+        self.rad.len()
+    }
+
+    fn suffixes(&self, _: usize) -> Vec<String> {
         vec!["backlash".into()]
     }
 
@@ -97,21 +102,26 @@ impl FromStated for Backlash {
 }
 
 impl OnEncoder for Backlash {
-    fn shapes(&self, at: Encoder) -> Vec<f64> {
+    fn shapes(&self, _: usize, at: Encoder) -> Vec<f64> {
         vec![0.5 * at.approach]
     }
 
-    fn slopes(&self, _: Encoder) -> Vec<f64> {
+    fn slopes(&self, _: usize, _: Encoder) -> Vec<f64> {
         vec![0.0]
     }
 
-    #[inline(always)]
-    fn shapes_of_joint(&self) -> usize {
-        1
+    fn of_joint(&self, joint: usize) -> Range<usize> {
+        joint..joint + 1
     }
 
     #[inline(always)]
-    fn shapes_in_lanes<S: Simd>(&self, simd: S, at: &impl EncoderLanes<S>, mut each: impl FnMut(usize, Lanes<S>)) {
+    fn shapes_in_lanes<S: Simd>(
+        &self,
+        simd: S,
+        _: usize,
+        at: &impl EncoderLanes<S>,
+        mut each: impl FnMut(usize, Lanes<S>),
+    ) {
         each(0, at.approach() * Lanes::splat(simd, 0.5));
     }
 }

@@ -49,7 +49,11 @@ impl Effect for Compliance {
         Self::KIND
     }
 
-    fn suffixes(&self) -> Vec<String> {
+    fn joints(&self) -> usize {
+        self.rad_per_nm.len()
+    }
+
+    fn suffixes(&self, _: usize) -> Vec<String> {
         vec!["compliance".into()]
     }
 

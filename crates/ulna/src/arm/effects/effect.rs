@@ -6,13 +6,16 @@ use crate::arm::unit::Unit;
 use crate::error::Result;
 use std::fmt::Debug;
 
-/// The parameters of one cause, as many for each joint, joint after joint.
+/// The parameters of one cause, joint after joint.
 pub trait Effect: Debug + Send + Sync {
     /// The word by which a study asks for it, such as `"backlash"`.
     fn kind(&self) -> &'static str;
 
+    /// Number of joints that it was stated for.
+    fn joints(&self) -> usize;
+
     /// The last parts of the names of a joint's parameters: `c1`, `s1` of `joint.3.c1`, `joint.3.s1`.
-    fn suffixes(&self) -> Vec<String>;
+    fn suffixes(&self, joint: usize) -> Vec<String>;
 
     /// What they are all measured in.
     fn unit(&self) -> Unit;
@@ -28,6 +31,17 @@ pub trait Effect: Debug + Send + Sync {
 
     /// Standard uncertainty of a parameter before any reading, where the arm's angles are known to `angle_rad`.
     fn known(&self, angle_rad: f64) -> f64;
+
+    /// Whether it is small beside the geometry, which can be found first without it.
+    fn is_small(&self) -> bool {
+        true
+    }
+
+    /// Whether it says where the arm stands and nothing of the arm: readings that see the arm from nowhere but itself do not
+    /// see it.
+    fn of_base(&self) -> bool {
+        false
+    }
 
     /// What is not a parameter makes sense.
     ///
@@ -49,16 +63,23 @@ pub trait Effect: Debug + Send + Sync {
 }
 
 impl dyn Effect + '_ {
-    /// Number of joints.
-    pub fn joints(&self) -> usize {
-        self.values().len() / self.suffixes().len().max(1)
-    }
-
     /// Names of all parameters, such as `joint.3.c1`.
     pub fn names(&self) -> Vec<String> {
-        let suffixes = self.suffixes();
-        let of_joint = |joint| suffixes.iter().map(move |suffix| format!("joint.{joint}.{suffix}"));
-        (1..=self.joints()).flat_map(of_joint).collect()
+        let of_joint = |joint| {
+            let suffixes = self.suffixes(joint).into_iter();
+            suffixes.map(move |suffix| format!("joint.{}.{suffix}", joint + 1))
+        };
+        (0..self.joints()).flat_map(of_joint).collect()
+    }
+
+    /// The joint that one of its values belongs to.
+    pub fn joint_of(&self, value: usize) -> usize {
+        let mut behind = 0;
+        let behind_joint = |&joint: &usize| {
+            behind += self.suffixes(joint).len();
+            value < behind
+        };
+        (0..self.joints()).find(behind_joint).unwrap_or_default()
     }
 }
 

@@ -25,7 +25,11 @@ impl Effect for Expansion {
         Self::KIND
     }
 
-    fn suffixes(&self) -> Vec<String> {
+    fn joints(&self) -> usize {
+        self.per_kelvin.len()
+    }
+
+    fn suffixes(&self, _: usize) -> Vec<String> {
         vec!["expansion".into()]
     }
 

@@ -7,6 +7,7 @@ use crate::arm::unit::Unit;
 use crate::error::{Error, Result};
 use crate::simd::Lanes;
 use pulp::Simd;
+use std::ops::Range;
 
 /// `q_i + Σ_k c_ik cos k q_i + s_ik sin k q_i` in place of each encoder angle `q_i`.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +30,11 @@ impl Effect for Harmonics {
         Self::KIND
     }
 
-    fn suffixes(&self) -> Vec<String> {
+    fn joints(&self) -> usize {
+        self.amplitudes_rad.len() / self.orders.len().max(1)
+    }
+
+    fn suffixes(&self, _: usize) -> Vec<String> {
         self.orders.iter().flat_map(|k| ["c", "s"].map(|part| format!("{part}{k}"))).collect()
     }
 
@@ -77,11 +82,11 @@ impl FromStated for Harmonics {
 }
 
 impl OnEncoder for Harmonics {
-    fn shapes(&self, at: Encoder) -> Vec<f64> {
+    fn shapes(&self, _: usize, at: Encoder) -> Vec<f64> {
         self.orders.iter().flat_map(|&k| [(f64::from(k) * at.q_rad).cos(), (f64::from(k) * at.q_rad).sin()]).collect()
     }
 
-    fn slopes(&self, at: Encoder) -> Vec<f64> {
+    fn slopes(&self, _: usize, at: Encoder) -> Vec<f64> {
         let each = |&k: &u32| {
             let k = f64::from(k);
             [-k * (k * at.q_rad).sin(), k * (k * at.q_rad).cos()]
@@ -89,14 +94,20 @@ impl OnEncoder for Harmonics {
         self.orders.iter().flat_map(each).collect()
     }
 
-    #[inline(always)]
-    fn shapes_of_joint(&self) -> usize {
-        2 * self.orders.len()
+    fn of_joint(&self, joint: usize) -> Range<usize> {
+        let each = 2 * self.orders.len();
+        joint * each..(joint + 1) * each
     }
 
     /// cos kq and sin kq from cos q and sin q, order by order.
     #[inline(always)]
-    fn shapes_in_lanes<S: Simd>(&self, _: S, at: &impl EncoderLanes<S>, mut each: impl FnMut(usize, Lanes<S>)) {
+    fn shapes_in_lanes<S: Simd>(
+        &self,
+        _: S,
+        _: usize,
+        at: &impl EncoderLanes<S>,
+        mut each: impl FnMut(usize, Lanes<S>),
+    ) {
         let (sin_q, cos_q) = at.sin_cos();
         let (mut sin, mut cos, mut order) = (sin_q, cos_q, 1);
         for (number, &k) in self.orders.iter().enumerate() {

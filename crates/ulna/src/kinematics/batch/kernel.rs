@@ -25,6 +25,8 @@ struct Layout {
     /// of each parameter that adds to the angle of an encoder: its derivative
     shapes: usize,
     compliance: usize,
+    /// the tip from the origin of the first axis, along the axes of the base frame
+    base: usize,
     kept: usize,
     end: usize,
 }
@@ -37,8 +39,9 @@ impl Layout {
         let tip = effects + n * EFFECT_SLOTS;
         let shapes = tip + 3;
         let compliance = shapes + chain.columns.on_encoders;
-        let kept = compliance + if chain.carried.is_some() { n * compliance::SLOTS } else { 0 };
-        Layout { effects, tip, shapes, compliance, kept, end: kept + chain.turn_column() + 1 }
+        let base = compliance + if chain.carried.is_some() { n * compliance::SLOTS } else { 0 };
+        let kept = base + if chain.base.is_some() { 3 } else { 0 };
+        Layout { effects, tip, shapes, compliance, base, kept, end: kept + chain.turn_column() + 1 }
     }
 }
 
@@ -111,7 +114,7 @@ impl<S: Simd> NullaryFnOnce for ForwardWithEffects<'_, S> {
             value.store(scratch, layout.tip + axis);
         }
         let stretched = tip.map(|value| value * stretch(last));
-        carry(
+        let p = carry(
             simd,
             chain,
             stretched,
@@ -141,7 +144,14 @@ impl<S: Simd> NullaryFnOnce for ForwardWithEffects<'_, S> {
                 own(scratch, i, 1, stretch(i));
                 (turn, Some(stretch(i)))
             },
-        )
+        );
+        let Some(base) = &chain.base else { return p };
+        let from_base = [0, 1, 2].map(|row| {
+            let along = |axis: usize| c(base.rotation[(row, axis)]);
+            p[2].mul_add(along(2), p[1].mul_add(along(1), p[0] * along(0)))
+        });
+        (0..3).for_each(|axis| from_base[axis].store(scratch, layout.base + axis));
+        [from_base[0] + c(base.offset[0]), from_base[1] + c(base.offset[1]), from_base[2]]
     }
 }
 
@@ -283,6 +293,28 @@ fn columns_with_effects<'a, S: Simd>(
     let (below, kept) = scratch.split_at_mut(layout.kept * S::F64_LANES);
     let kept = region::<S>(kept, 0);
     let mut g = direction;
+    if let Some(base) = &chain.base {
+        let p = [0, 1, 2].map(|axis| Lanes::load(simd, below, layout.base + axis));
+        let c = |value: f64| Lanes::splat(simd, value);
+        if chain.effects.base_tilt.is_some() {
+            // g · (axis × p) = axis · (p × g)
+            let moment = [0, 1, 2].map(|k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                p[j].neg_mul_add(g[i], p[i] * g[j])
+            });
+            for (k, axis) in base.axes.iter().enumerate() {
+                let about = moment[2].mul_add(c(axis[2]), moment[1].mul_add(c(axis[1]), moment[0] * c(axis[0])));
+                about.store(kept, effect + chain.columns.base_tilt + k);
+            }
+        }
+        if chain.effects.base_offset.is_some() {
+            (0..2).for_each(|k| g[k].store(kept, effect + chain.columns.base_offset + k));
+        }
+        g = [0, 1, 2].map(|axis| {
+            let along = |row: usize| c(base.rotation[(row, axis)]);
+            g[2].mul_add(along(2), g[1].mul_add(along(1), g[0] * along(0)))
+        });
+    }
     for (i, link) in chain.links.iter().enumerate() {
         let [turn, alpha, a, fourth] = through(simd, link, i, below, &mut g);
         let own = |slot: usize| Lanes::load(simd, below, layout.effects + i * EFFECT_SLOTS + slot);

@@ -118,6 +118,7 @@ impl WithSimd for VarianceOp<'_> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        let mut along = vec![Lanes::splat(simd, 0.0); self.noise.encoder_rad.len()];
         for k in 0..self.variance.len() / S::F64_LANES {
             let (_, u) = between(simd, self.chain, self.run, k, self.tip, self.scratch);
             let mut variance = Lanes::splat(simd, 2.0 * self.noise.seat_mm.powi(2));
@@ -129,13 +130,23 @@ impl WithSimd for VarianceOp<'_> {
                     u,
                     #[inline(always)]
                     |column, per_rad| {
-                        let encoder = self.chain.encoder_of(column);
-                        if let Some(&sigma) = encoder.and_then(|encoder| self.noise.encoder_rad.get(encoder)) {
-                            let moved = per_rad * Lanes::splat(simd, sigma);
-                            variance = moved.mul_add(moved, variance);
+                        if let Some(own) = self.chain.encoder_of(column).and_then(|encoder| along.get_mut(encoder)) {
+                            *own = per_rad;
                         }
                     },
                 );
+                if along.is_empty() {
+                    continue;
+                }
+                self.chain.by_encoders(
+                    &mut along,
+                    #[inline(always)]
+                    |own, of_other, ratio| of_other.mul_add(Lanes::splat(simd, ratio), own),
+                );
+                for (&along, &sigma) in along.iter().zip(&self.noise.encoder_rad) {
+                    let moved = along * Lanes::splat(simd, sigma);
+                    variance = moved.mul_add(moved, variance);
+                }
             }
             variance.store(self.variance, k);
         }
