@@ -65,7 +65,7 @@ DEMOS = {
         next=(
             ("report {}/result -o {}/report.html", "the report"),
             ("measure {}/result/result.json {}/bars.csv", "x, y, z and u"),
-            ("identify {}/study.toml", "what they tell"),
+            ("show {}/result -o {}/arm.html", "the arm, drawn"),
             _OWN,
         ),
     ),
