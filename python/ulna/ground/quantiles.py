@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from statistics import NormalDist
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,11 +24,15 @@ _SMALLEST = 1e-300
 
 def normal(p: float) -> float:
     """The value that a standard normal variable stays below with probability p, 0 < p < 1 (Wichura 1988)."""
+    from statistics import NormalDist  # loads decimal and fractions, while most fits ask for no quantile
+
     return NormalDist().inv_cdf(p)
 
 
 def normals(p: NDArray[np.floating]) -> F64:
     """The same of each p, (N,)."""
+    from statistics import NormalDist
+
     inverse = NormalDist().inv_cdf
     return np.array([inverse(each) for each in p.tolist()])
 
