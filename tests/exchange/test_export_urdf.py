@@ -121,7 +121,7 @@ def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
 
 
 def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not_carried(_arm(arms.elbow())) == []
+    assert not_carried(_arm(arms.elbow()), has_base=True) == []
     says(
         remark_not_carried(["harmonics of joint 2", "compliance"], "a URDF", Path("arm.toml")),
         "arm.toml: a URDF has no place for harmonics of joint 2, compliance",
