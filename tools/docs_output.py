@@ -27,6 +27,7 @@ SKIPPED = 77
 TRUTH = "examples/platinum/truth.toml"
 #: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
 COMMANDS: dict[str, tuple[list[str], int | None]] = {
+    "demo.txt": (["demo"], None),
     "identify.txt": (["identify", "examples/platinum/study.toml"], None),
     "calibrate.txt": (["calibrate", "examples/platinum/study.toml", "-o", "out/demo"], None),
     "evaluate.txt": (["evaluate", "out/demo/result.json", "examples/platinum/check.toml"], None),

@@ -33,6 +33,8 @@ EXAMPLES: dict[str, list[Effects]] = {
         Effects(compliance_rad_per_nm=2e-6 * (k + 1), mass_kg=0.8, centre_mm=(0.0, 10.0, -60.0)) for k in range(7)
     ],
     "backlash": [Effects(backlash_rad=1e-4 + 2e-5 * k) for k in range(7)],
+    "base-tilt": [Effects(base_tilt_rad=(0.004, -0.007)), *[NONE] * 6],
+    "base-offset": [Effects(base_offset_mm=(0.6, -1.1)), *[NONE] * 6],
     "coupling": [
         Effects(coupled_to=coupled_to, coupling=ratios)
         for coupled_to, ratios in [
@@ -44,6 +46,14 @@ EXAMPLES: dict[str, list[Effects]] = {
         ]
     ],
 }
+
+#: coordinates in the base frame
+POINTS = """[artefact.tracker]
+kind = "points"
+frame = "arm"
+u = 0.002
+features = { a = [500, 0, 300], b = [0, 550, 200], c = [-450, 100, 500], d = [-100, -500, 100], e = [300, 300, 600] }
+"""
 
 #: how a simulation is told what the effect depends on, where there is something to tell
 TOLD: dict[str, str] = {"temperature": "temperature = { mean = 22.0, spread = 4.0 }\n", "approach": ""}
@@ -95,7 +105,9 @@ def own_parameters(arm: Arm, effect: Effect) -> list[int]:
 def spec(folder: Path, effect: Effect, placements: int = 600) -> Path:
     told = TOLD[effect.needs.name] if effect.needs is not None else ""
     fit = f'fit = {{ extras = ["{effect.name}"], judge_extras = false }}'
-    return write(folder, BAR + f"placements = {placements}\n", f"{NOISE}\n{told}{fit}", affected(effect))
+    # where the arm stands shows in coordinates of its base frame alone
+    touched = f"{POINTS}touches = 60\n" if effect.of_first else BAR + f"placements = {placements}\n"
+    return write(folder, touched, f"{NOISE}\n{told}{fit}", affected(effect))
 
 
 @each_effect
@@ -172,10 +184,8 @@ def test_zero_of_it_changes_nothing(effect: Effect) -> None:
     plain, (q_rad, said) = true_arm(), poses()
     # what is known of it from the design stays, such as to which a joint is coupled
     drawn_only = [replace(own, **effect.none()) for own in EXAMPLES[effect.name]]
-    joints = [
-        replace(joint, effects=with_extras(own, [effect.name], [1, 2]))
-        for joint, own in zip(plain.joints, drawn_only, strict=True)
-    ]
+    effects = with_extras(drawn_only, [effect.name], [1, 2])
+    joints = [replace(joint, effects=own) for joint, own in zip(plain.joints, effects, strict=True)]
     arm = replace(plain, joints=tuple(joints))
     assert arm.extras == [effect.name]
     np.testing.assert_array_equal(arm.tip(q_rad, **said), plain.tip(q_rad))

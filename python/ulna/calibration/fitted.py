@@ -20,6 +20,7 @@ from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
 from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
+from ulna.calibration.poses import PlacementPose, placement_poses
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
@@ -53,6 +54,7 @@ class FittedStudy:
             "fit": self._summary,
             "residuals": lambda: self._residuals,
             "artefacts": lambda: by_placement(self._after),
+            "placements": self._poses,
             "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: over_all(self._after),
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
@@ -78,6 +80,14 @@ class FittedStudy:
     @cached_property
     def _residuals(self) -> pl.DataFrame:
         return residual_table(self.study, self.core)
+
+    def _poses(self) -> list[PlacementPose]:
+        core = self.core
+        of_parameters = self._covariance.of(self.assembled.arm.parameter_names)
+        freedom = core.degrees_of_freedom
+        variance_mm2 = core.cost / freedom if freedom else float("nan")
+        residuals = [core.residuals(group) for group in range(len(self.study.readings))]
+        return placement_poses(self._arm, self.study, residuals, of_parameters, variance_mm2)
 
     def _any_outliers(self) -> bool:
         return any(self.core.outliers(group).any() for group in range(len(self.study.readings)))

@@ -26,6 +26,7 @@ from ulna.calibration.identify import Identification
 from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures, Placements, figures_of
 from ulna.calibration.plots import Plots
+from ulna.calibration.poses import PlacementPose
 from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.models import fill_json
@@ -52,7 +53,7 @@ RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
 FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
 """All that a result may be written to."""
 
-AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras")
+AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "placements")
 """Fields that are the same in the file and in memory."""
 
 
@@ -70,6 +71,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
     artefacts: Sequence[PlacementFigures]
     """What a metrologist reads, of the calibrated arm, from the fitted readings alone."""
+    placements: Sequence[PlacementPose]
+    """Where each standing of an artefact with features was found, in the arm's base frame, with uncertainties."""
     before: Figures
     """The same over all placements, of the arm that the fit started from."""
     after: Figures
@@ -138,6 +141,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
             outliers=[OutlierEntry.model_construct(None, **entry) for entry in self.outliers],
             extras=self.extras,
             artefacts=[entry.entry() for entry in self.artefacts],
+            placements=list(self.placements),
             overall=OverallEntry.model_construct(
                 before=FigureEntry.model_construct(None, **self.before),
                 after=FigureEntry.model_construct(None, **self.after),
@@ -164,7 +168,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
         written = ["result.json", "arm.toml", RESIDUALS if many else "residuals.csv"]
         written += [PLACEMENTS] if many_placements else []
         with output_folder(folder, written, force, instead_of=[name for name in FILES if name not in written]) as here:
-            file = dataclasses.replace(self, artefacts=[]).file() if many_placements else self.file()
+            file = dataclasses.replace(self, artefacts=[], placements=[]).file() if many_placements else self.file()
             if many_placements:
                 file.artefacts_file = write_beside(Placements.of(self.artefacts).table, here / PLACEMENTS)
             if many:

@@ -138,5 +138,16 @@ def _coupled(study: Study) -> Iterator[Suspicion]:
             )
 
 
-SOURCES: tuple[Callable[[Study], Iterator[Suspicion]], ...] = (_units, _swapped, _counted, _coupled)
+def _standing(study: Study) -> Iterator[Suspicion]:
+    more = [effect.name for effect in EFFECTS.values() if effect.of_first and effect.name not in study.fit.extras]
+    if more and any(group.artefact.frame == "arm" for group in study.readings):
+        extras = [*study.fit.extras, *more]
+        yield Suspicion(
+            "if the first axis leans, or stands aside, in the frame of the coordinates",
+            f"Try [fit] extras = {extras}: where it stands is then found.".replace("'", '"'),
+            replace(study, fit=replace(study.fit, extras=extras)),
+        )
+
+
+SOURCES: tuple[Callable[[Study], Iterator[Suspicion]], ...] = (_units, _swapped, _counted, _coupled, _standing)
 """One a row."""

@@ -7,10 +7,13 @@ from typing import Annotated, Any
 
 import typer
 
+from ulna.cli.help import Command, Group
 from ulna.cli.options import ArmFile, Force, one_of
 from ulna.cli.running import guard
 
 app = typer.Typer(
+    cls=Group,
+    rich_markup_mode=None,
     name="export",
     help="Write an arm, calibrated or not, in the form that another program takes.",
     no_args_is_help=True,
@@ -19,7 +22,7 @@ app = typer.Typer(
 )
 
 
-@app.command("urdf")
+@app.command("urdf", cls=Command)
 @guard
 def urdf(
     arm: ArmFile,
@@ -61,7 +64,7 @@ def urdf(
                 "each probe get links of their own. Leave it out, or name the robot's URDF with --template."
             )
     refuse_inputs([out], [arm, *([template] if template else [])])
-    source = read_source(arm, "a URDF")
+    source = read_source(arm, "a URDF", has_base=True)
     if template is None:
         write_file(out, urdf_text(source.arm), force)
         output.say(f"{out}: '{source.arm.name}', {source.arm.n} joints, {_listed(source.arm.probes)}.")
@@ -75,7 +78,7 @@ def urdf(
         output.say(f"warning: {remark}")
 
 
-@app.command("dh")
+@app.command("dh", cls=Command)
 @guard
 def dh(
     arm: ArmFile,
@@ -107,7 +110,7 @@ def dh(
     one_of("--length-unit", length_unit, ("mm", "m", "in"))
     one_of("--angle-unit", angle_unit, ("rad", "deg"))
     refuse_inputs([out], [arm])
-    source = read_source(arm, "a table")
+    source = read_source(arm, "a table", has_base=False)
     choices: Any = {"convention": convention, "length": length_unit, "angle": angle_unit}
     written, said = (source.arm, []) if hayati else without_beta(source.arm)
     source.remarks.extend(f"{out}: {remark}" for remark in said)

@@ -33,13 +33,15 @@ def plan(
     from ulna.cli import output
     from ulna.cli.printed.plan import plan_report
     from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.extras import need
     from ulna.planning.file import load_plan_spec
-    from ulna.planning.outcome import FILES
+    from ulna.planning.outcome import FILES, NEEDS_PICTURES
     from ulna.planning.plan import plan as run_plan
     from ulna.work.pieces import workers_at
 
     if out is not None:
-        check_output(out, FILES, force)  # before the long work
+        need(NEEDS_PICTURES, "matplotlib")  # before the long work
+        check_output(out, FILES, force)
     nominal = Arm.load(arm)
     asked = load_plan_spec(spec, nominal)
     if out is not None:

@@ -11,6 +11,7 @@ import polars as pl
 
 from ulna.formats.output import UNDER_WAY
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 
 MOST_SHEET_ROWS = 1_048_576
 """Of a sheet of a workbook, the names of the columns among them (ECMA-376, as Excel has it)."""
@@ -47,7 +48,8 @@ def write_json_lines(frames: Iterator[pl.DataFrame], path: Path) -> None:
 
 
 def write_parquet(frames: Iterator[pl.DataFrame], path: Path) -> None:
-    """Row groups as they come."""
+    """Row groups as they come. Raises UlnaInputError where what writes them is not installed."""
+    need(str(path), "pyarrow")
     import pyarrow.parquet
 
     with ExitStack() as stack:

@@ -15,6 +15,7 @@ from ulna.arm.arm import Arm
 from ulna.formats.output import output_folder
 from ulna.geometry.rigid import turned
 from ulna.ground.arrays import F64
+from ulna.ground.extras import need
 from ulna.ground.shown import About, Shown, Table
 from ulna.planning.candidates import Candidates
 from ulna.planning.scene import Figures
@@ -23,6 +24,7 @@ from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial
 
 FORMAT = "ulna-plan-result/1"
+NEEDS_PICTURES = "the pictures of a plan"
 FILES = ["plan.csv", "plan.json", "places.svg", "places.png", "curve.svg", "curve.png"]
 
 
@@ -85,6 +87,7 @@ class Plan(Shown):
 
 def save(plan: Plan, folder: Path, force: bool = False) -> None:
     """Write FILES, whole or not at all. Raises UlnaInputError."""
+    need(NEEDS_PICTURES, "matplotlib")
     from ulna.planning.plots import draw_curve, draw_places
 
     with output_folder(folder, FILES, force) as staging:

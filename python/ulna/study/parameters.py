@@ -23,7 +23,8 @@ def start_arm(study: StudyData) -> Arm:
         effect_named(extra).check_asked([joint.effects for joint in arm.joints], arm.name, study.label)
     if not extras:
         return arm
-    joints = [replace(joint, effects=with_extras(joint.effects, extras, study.fit.harmonics)) for joint in arm.joints]
+    effects = with_extras([joint.effects for joint in arm.joints], extras, study.fit.harmonics)
+    joints = [replace(joint, effects=own) for joint, own in zip(arm.joints, effects, strict=True)]
     return replace(arm, joints=tuple(joints))
 
 

@@ -21,7 +21,7 @@ def left_out(
         left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
     if TEMPERATURE in arm.needs and not u_temperature_k:
         left.append("the uncertainty of the temperature: nobody stated it")
-    absent = [effect for effect in EFFECTS.values() if effect not in arm.effects]
+    absent = [effect for effect in EFFECTS.values() if effect not in arm.effects and not effect.of_first]
     left += [f"{effect.left_out}: the arm's model has none" for effect in absent]
     left.append("the form and the temperature of what is measured")
     left.append("errors of the calibration's artefact beyond the u that its study states")

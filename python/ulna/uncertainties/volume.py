@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE
@@ -15,6 +14,7 @@ from ulna.arm.directions import drawn, steps
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.quantiles import normal, student
 from ulna.ground.shown import About, Shown, Table
 from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.simulation.mover import Mover
@@ -249,8 +249,10 @@ class Account:
         """(M,) coverage factors: Student's where the calibration estimated its noise (GUM G.4.1), else normal."""
         upper = 0.5 * (1.0 + self._task.p)
         if math.isinf(self._task.degrees_of_freedom):
-            return np.full(len(variance), float(ndtri(upper)))
+            return np.full(len(variance), normal(upper))
         with np.errstate(divide="ignore", invalid="ignore"):
             effective = self._task.degrees_of_freedom * (variance / parameters) ** 2
-        k: F64 = np.where(np.isfinite(effective), stdtrit(effective, upper), float(ndtri(upper)))
+        k: F64 = np.full(len(variance), normal(upper))
+        some = np.isfinite(effective)
+        k[some] = student(effective[some], upper)
         return k

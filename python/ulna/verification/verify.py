@@ -13,6 +13,7 @@ from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.extras import need
 from ulna.ground.shown import About, Shown, Table
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
@@ -82,14 +83,18 @@ class Verification(Shown):
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write verification.json, values.csv and, where lengths were measured, lengths.svg and .png. Raises
         UlnaInputError."""
-        from ulna.verification.plots import draw_lengths
         from ulna.verification.values_table import values_table
+
+        if len(self.files) > 2:
+            need("the picture of lengths in the results", "matplotlib")
 
         with output_folder(folder, self.files, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / FILE).write_text(text + "\n", encoding="utf-8")
             values_table(self.states).write_csv(staging / TABLE)
             if len(self.files) > 2:
+                from ulna.verification.plots import draw_lengths
+
                 draw_lengths(self.states, staging)
 
     @property

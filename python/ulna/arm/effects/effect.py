@@ -40,6 +40,8 @@ class Effect(ABC):
     """What may be of a parameter before anybody has measured."""
     prior_u: ClassVar[float | None] = None
     """Standard uncertainty of a parameter where the study states none; None: nothing is known beforehand."""
+    of_first: ClassVar[bool] = False
+    """Whether only the first joint has it: where the arm stands, of which no length depends."""
     needs: ClassVar[Condition | None] = None
     """On which condition of a pose it depends."""
     whose: ClassVar[str] = "joints"

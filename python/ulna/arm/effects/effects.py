@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 from ulna.arm.conditions import Condition
 from ulna.arm.effects.backlash import BacklashOfJoint
+from ulna.arm.effects.base import BaseOffsetOfJoint, BaseTiltOfJoint
 from ulna.arm.effects.compliance import ComplianceOfJoint
 from ulna.arm.effects.coupling import CouplingOfJoint
 from ulna.arm.effects.effect import Effect, Row
@@ -28,6 +29,8 @@ from ulna.ground.errors import UlnaInputError, nearest
 @dataclass(frozen=True)
 class Effects(
     # a row each; dataclasses take the fields of the last one first
+    BaseOffsetOfJoint,
+    BaseTiltOfJoint,
     CouplingOfJoint,
     BacklashOfJoint,
     ComplianceOfJoint,
@@ -76,11 +79,13 @@ def effect_named(name: str) -> Effect:
     return EFFECTS[name]
 
 
-def with_extras(own: Effects, extras: Sequence[str], orders: Sequence[int]) -> Effects:
-    """The effects with zero of what `extras` asks for, where there is none of it yet; orders: of harmonics."""
-    for extra in extras:
-        own = replace(own, **effect_named(extra).zero(own, orders))
-    return own
+def with_extras(joints: Sequence[Effects], extras: Sequence[str], orders: Sequence[int]) -> list[Effects]:
+    """The joints' effects with zero of what `extras` asks for, where there is none of it yet; orders: of harmonics."""
+    found = list(joints)
+    for effect in map(effect_named, extras):
+        for joint in range(1 if effect.of_first else len(found)):
+            found[joint] = replace(found[joint], **effect.zero(found[joint], orders))
+    return found
 
 
 def without(own: Effects) -> Effects:

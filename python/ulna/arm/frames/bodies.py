@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ulna.arm.data import ArmData
 from ulna.arm.effects.effect import Effect
+from ulna.arm.frames.base import t_base_first
 from ulna.arm.frames.links import link_at_zero
 from ulna.arm.frames.rigid import pose, turn
 from ulna.ground.arrays import F64
@@ -20,10 +21,10 @@ from ulna.ground.arrays import F64
 def constant_transforms(arm: ArmData) -> list[F64]:
     """n + 1 times (4, 4), mm: what stands before joint 1, 2, … n, and between the last joint and the probes' tips.
 
-    The first is the identity, for the base frame is on axis 1; so is the last, unless the arm has a full last link.
+    The first is the identity where the base frame is on axis 1; so is the last, unless the arm has a full last link.
     """
-    links = [link_at_zero(joint) for joint in arm.joints]
-    return [np.eye(4), *links] if arm.full_last_link else [np.eye(4), *links[:-1], np.eye(4)]
+    first, links = t_base_first(arm), [link_at_zero(joint) for joint in arm.joints]
+    return [first, *links] if arm.full_last_link else [first, *links[:-1], np.eye(4)]
 
 
 def turns(arm: ArmData) -> F64:
@@ -37,8 +38,8 @@ def turns(arm: ArmData) -> F64:
 
 
 def pictured(effect: Effect, arm: ArmData) -> bool:
-    """Whether a picture has all that an effect does: nothing but such ratios."""
-    return bool(effect.ratios([each.effects for each in arm.joints]))
+    """Whether a picture has all that an effect does: nothing but such ratios, or where the arm stands."""
+    return effect.of_first or bool(effect.ratios([each.effects for each in arm.joints]))
 
 
 def bodies(arm: ArmData, q_rad: ArrayLike) -> list[F64]:

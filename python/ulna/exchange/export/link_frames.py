@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.frames.base import t_base_first
 from ulna.arm.frames.links import link_at_zero, link_between
 from ulna.arm.frames.rigid import apart, inverse, pose, smallest_turn, turn
 from ulna.arm.joint import Joint
@@ -33,7 +34,8 @@ def calibrated_frames(
     """In the root's frame, mm: the frames that the rotary joints get, their signs, and where the tip is."""
     before, _ = frames_at_zero(chain)
     # On the same axes, each a frame that only the axes decide, and one that the arm's own numbers lead to.
-    t_drawn = t_arm = own_drawn = own_arm = t_root_base
+    t_drawn = own_drawn = t_root_base @ t_base_first(drawn)
+    t_arm = own_arm = t_root_base @ t_base_first(arm)
     frames: list[F64] = []
     signs = [arm.joints[0].sign]
     for k in range(arm.n - 1):

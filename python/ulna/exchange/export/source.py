@@ -19,8 +19,10 @@ class Source:
     """What the user should know of the numbers."""
 
 
-def read_source(path: Path, what: str) -> Source:
-    """An arm.toml or a result.json, to be written as `what` ("a URDF"). Raises UlnaInputError."""
+def read_source(path: Path, what: str, has_base: bool) -> Source:
+    """An arm.toml or a result.json, to be written as `what` ("a URDF"). Raises UlnaInputError.
+
+    has_base: whether that says where the first axis stands."""
     arm = Arm.load(path)
     for k, joint in enumerate(arm.joints, start=1):
         if joint.sign not in (1, -1):
@@ -29,7 +31,7 @@ def read_source(path: Path, what: str) -> Source:
                 " Calibrate first, and export the result."
             )
     remarks = remarks_of_result(path)
-    left_out = not_carried(arm)
+    left_out = not_carried(arm, has_base)
     if left_out:
         remarks.append(remark_not_carried(left_out, what, path))
     return Source(arm, remarks)
@@ -61,9 +63,10 @@ def remarks_of_result(path: Path) -> list[str]:
     return remarks
 
 
-def not_carried(arm: Arm) -> list[str]:
-    """What an arm has beyond rigid links and turning joints, in words: neither a URDF nor a table carries it."""
-    return [effect.words for effect in arm.effects]
+def not_carried(arm: Arm, has_base: bool) -> list[str]:
+    """What an arm has beyond rigid links and turning joints, in words: neither a URDF nor a table carries it, but for
+    where the first axis stands."""
+    return [effect.words for effect in arm.effects if not (has_base and effect.of_first)]
 
 
 def remark_not_carried(left_out: list[str], what: str, path: Path) -> str:

@@ -8,6 +8,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from ulna.arm.arm import Arm
+from ulna.arm.frames.base import t_base_first
 from ulna.arm.frames.links import link_at_zero
 from ulna.arm.frames.rigid import inverse, pose, to_rpy, turn
 from ulna.arm.given import ArmLike, as_arm
@@ -39,7 +41,7 @@ def urdf_text(arm: ArmLike) -> str:
     if any(joint.limits_rad for joint in arm.joints):
         parts.append(NO_MOTOR)
     parts += [f"  <link name={quoteattr(name)}/>\n" for name in links]
-    *origins, t_end = joint_origins(arm.joints)
+    *origins, t_end = joint_origins(arm)
     for k, (joint, t) in enumerate(zip(arm.joints, origins, strict=True)):
         parts.append(_joint(joints[k], links[k], links[k + 1], t, joint))
     for name, link, probe in zip(fixed, links[arm.n + 1 :], arm.probes.values(), strict=True):
@@ -47,15 +49,16 @@ def urdf_text(arm: ArmLike) -> str:
     return "".join([*parts, "</robot>\n"])
 
 
-def joint_origins(joints: Iterable[Joint]) -> list[F64]:
+def joint_origins(arm: Arm) -> list[F64]:
     """(4, 4) each, mm: every joint's frame in that of the joint before it, at encoder angle 0; then that of the tips.
+    That of the first is in the base frame, in which its axis may lean and stand aside.
 
     `Tx(a) · Rx(alpha) · Ry(beta)` of the link before, then `Rz(-theta0) · Tz(d)` of the joint's own link: a turn about
     the joint's axis may as well come before the encoder's.
     """
     origins = []
-    before = np.eye(4)
-    for joint in joints:
+    before = t_base_first(arm)
+    for joint in arm.joints:
         own = pose(turn("z", -joint.theta0_rad), np.array([0.0, 0.0, joint.d_mm]))
         origins.append(before @ own)
         before = inverse(own) @ link_at_zero(joint)

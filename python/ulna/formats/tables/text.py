@@ -1,6 +1,7 @@
 """CSV and its dialects: fast where all is well, exact about the cell where it is not.
 
-Polars reads the columns, PyArrow the pieces of long files. Only when they refuse a file, or leave a gap or a number
+Polars reads the columns, PyArrow the pieces of long files (where it is not installed Polars, after a look at every
+cell). Only when they refuse a file, or leave a gap or a number
 that is none, is the file gone through again cell by cell to find the first bad one.
 """
 
@@ -22,6 +23,7 @@ from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.places import Places
 from ulna.formats.tables.lines import LineTable, open_lines, untidy
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import installed
 
 _BLOCK_BYTES = 1 << 20
 _NAMES = {";": "semicolons", "\t": "tabs"}
@@ -101,6 +103,10 @@ class TextTable(Header):
     # ------------------------------------------------------------ piece by piece
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        if not installed("pyarrow"):
+            self._walk(lambda column: column in numbers, [*numbers, *texts])
+            yield from self._forgiving(numbers, texts, 0, rows)
+            return
         import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
 
         from ulna.formats.tables.arrow import array_piece
