@@ -127,7 +127,7 @@ def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> No
         "arm.toml: a URDF has no place for harmonics of joint 2, compliance",
         "differ from the arm's",
     )
-    monkeypatch.setattr("ulna.exchange.export.source.not_carried", lambda arm: [f"{arm.n} springs"])
+    monkeypatch.setattr("ulna.exchange.export.source.not_carried", lambda arm, has_base: [f"{arm.n} springs"])
     assert "4 springs" in read_source(FOSSILS / "arm-1.toml", "a URDF", has_base=True).remarks[0]
 
 

@@ -20,6 +20,7 @@ from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
 from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
+from ulna.calibration.placements import Figures
 from ulna.calibration.poses import PlacementPose, placement_poses
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
@@ -57,6 +58,7 @@ class FittedStudy:
             "placements": self._poses,
             "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: over_all(self._after),
+            "without_far_off": self._without_far_off,
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
             "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
@@ -88,6 +90,16 @@ class FittedStudy:
         variance_mm2 = core.cost / freedom if freedom else float("nan")
         residuals = [core.residuals(group) for group in range(len(self.study.readings))]
         return placement_poses(self._arm, self.study, residuals, of_parameters, variance_mm2)
+
+    def _without_far_off(self) -> Figures | None:
+        if self.study.fit.loss == "none" or not self._any_outliers():
+            return None
+        groups = [
+            group.select(~self.core.outliers(number))
+            for number, group in enumerate(self.study.readings)
+            if not self.core.outliers(number).all()
+        ]
+        return overall_figures(self._arm, dataclasses.replace(self.study, readings=groups))
 
     def _any_outliers(self) -> bool:
         return any(self.core.outliers(group).any() for group in range(len(self.study.readings)))

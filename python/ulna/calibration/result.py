@@ -78,6 +78,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     after: Figures
     """The same over all placements, of the calibrated arm."""
     provenance: dict[str, Any]
+    without_far_off: Figures | None = None
+    """As `after`, without the readings that are far off; None where there are none, or no loss let them count less."""
     outliers: list[dict[str, Any]] = field(default_factory=list)
     """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
     extras: list[JudgedExtra] = field(default_factory=list)
@@ -145,6 +147,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
             overall=OverallEntry.model_construct(
                 before=FigureEntry.model_construct(None, **self.before),
                 after=FigureEntry.model_construct(None, **self.after),
+                without_far_off=_entry(self.without_far_off),
             ),
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         )
@@ -205,11 +208,20 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
                 "provenance": lambda: document["provenance"],
                 "before": lambda: figures_of(file.overall.before),
                 "after": lambda: figures_of(file.overall.after),
+                "without_far_off": lambda: _figures(file.overall.without_far_off),
                 "artefacts": lambda: _placements(file, path),
                 "study": lambda: None,
                 "residuals": _residuals(file, rows, path),
             }
         )
+
+
+def _entry(figures: Figures | None) -> FigureEntry | None:
+    return None if figures is None else FigureEntry.model_construct(None, **figures)
+
+
+def _figures(entry: FigureEntry | None) -> Figures | None:
+    return None if entry is None else figures_of(entry)
 
 
 def _placements(file: ResultFile, path: Path) -> Sequence[PlacementFigures]:

@@ -64,6 +64,8 @@ class OverallEntry(Open):
     """Of the arm that the fit started from."""
     after: FigureEntry
     """Of the calibrated arm."""
+    without_far_off: FigureEntry | None = None
+    """The same without the readings that are far off, where a loss let them count less."""
 
 
 class ProvenanceEntry(Open):
