@@ -34,6 +34,7 @@ from ulna.formats.output import output_folder
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 from ulna.ground.on_demand import OnDemand
 from ulna.ground.provided import provided
 from ulna.ground.shown import About, Shown
@@ -71,8 +72,6 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
     artefacts: Sequence[PlacementFigures]
     """What a metrologist reads, of the calibrated arm, from the fitted readings alone."""
-    placements: Sequence[PlacementPose]
-    """Where each standing of an artefact with features was found, in the arm's base frame, with uncertainties."""
     before: Figures
     """The same over all placements, of the arm that the fit started from."""
     after: Figures
@@ -80,6 +79,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     provenance: dict[str, Any]
     without_far_off: Figures | None = None
     """As `after`, without the readings that are far off; None where there are none, or no loss let them count less."""
+    placements: Sequence[PlacementPose] = field(default_factory=list)
+    """Where each standing of an artefact with features was found, in the arm's base frame, with uncertainties."""
     outliers: list[dict[str, Any]] = field(default_factory=list)
     """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
     extras: list[JudgedExtra] = field(default_factory=list)
@@ -107,7 +108,9 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
 
     @property
     def plot(self) -> Plots:
-        """Its drawings, those of the report: `result.plot.residuals()`, `.parameters()`, `.map()`, …"""
+        """Its drawings, those of the report: `result.plot.residuals()`, `.parameters()`, `.joint(3)`, … Raises
+        UlnaInputError where Matplotlib is not installed."""
+        need("result.plot", "matplotlib")
         plots: Plots = provided("plots of a result")(self)
         return plots
 

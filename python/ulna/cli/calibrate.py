@@ -19,8 +19,9 @@ def calibrate(
     Prints the figures before and after, the parameters with their standard uncertainties, what the readings could
     not determine, whether blocks beyond geometry earned their place, and readings far off, on one screen; with --all
     every figure and parameter, why something was not determined, and what would help. Of a fit that ended badly: the
-    rows that are met worst, and what to try. With -o it writes result.json, arm.toml (the calibrated arm, ready to use) and residuals.csv
-    (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not converge.
+    rows that are met worst, and what to try. With -o it writes result.json, arm.toml (the calibrated arm, ready to
+    use) and residuals.csv (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not
+    converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """

@@ -93,7 +93,8 @@ def _parameters(rows: Sequence[Parameter], width: int, room: int) -> list[Render
 
 def _open(result: Result) -> list[RenderableType]:
     """What was lost and what is weak, a line each."""
-    found, parts = result.identifiability, []
+    found = result.identifiability
+    parts: list[RenderableType] = []
     if found.lost:
         parts += ["", Text(f"{determined_in_words(found).capitalize()} Why, and what helps: --all.")]
         for direction in found.lost[:_FEW]:
@@ -116,22 +117,22 @@ def _far_off(result: Result) -> list[RenderableType]:
         return []
     more = len(result.outliers) - _FEW
     counted = "They counted in full." if result.fit.loss == "none" else "The loss let them count less."
-    return [
+    parts: list[RenderableType] = [
         "",
         Text(f"Far off the rest: {len(result.outliers)} of {result.fit.readings} readings. {counted} Look at them:"),
         *(_cut(f" {one_far_off(entry)}") for entry in result.outliers[:_FEW]),
-        *([Text(f" … and {more} more: --all, result.json")] if more > 0 else []),
     ]
+    return [*parts, Text(f" … and {more} more: --all, result.json")] if more > 0 else parts
 
 
 def _verdict(result: Result) -> Text:
     fit, found = result.fit, result.identifiability
     far = f", {len(result.outliers)} far off" if result.outliers else ""
-    text = f"Converged: {figure_mm(fit.rms_mm)} mm rms, {found.determined} of {found.parameters} parameters determined{far}."
-    doubts = fit.common_factor is not None or bool(fit.mirrored_signs)
-    return Text(
-        text + (" Read what is asked above." if doubts else ""), style="bold yellow" if doubts else "bold green"
-    )
+    determined = f"{found.determined} of {found.parameters} parameters determined"
+    text = f"Converged: {figure_mm(fit.rms_mm)} mm rms, {determined}{far}."
+    if fit.common_factor is not None or fit.mirrored_signs:
+        return Text(f"{text} Read what is asked above.", style="bold yellow")
+    return Text(text, style="bold green")
 
 
 def _badly(result: Result, suspected: Suspicion | None) -> list[RenderableType]:
@@ -162,7 +163,6 @@ def _cut(text: str) -> Text:
 
 def _lines(part: RenderableType, width: int) -> int:
     """That it takes on a terminal; tables are as wide as they are."""
-    console = Console(file=StringIO(), width=10_000 if isinstance(part, Table) else width)
-    console.print(part)
-    text = console.file.getvalue()  # type: ignore[attr-defined]
-    return text.count("\n")
+    printed = StringIO()
+    Console(file=printed, width=10_000 if isinstance(part, Table) else width).print(part)
+    return printed.getvalue().count("\n")

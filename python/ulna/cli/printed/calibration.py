@@ -119,20 +119,26 @@ def parameter_tables(parameters: Sequence[Parameter], with_start: bool = True) -
     """
     beyond = [row for row in parameters if extra_of(row.name) or row.name.startswith("artefact.")]
     geometry = [row for row in parameters if row not in beyond]
-    tables: list[RenderableType] = [_parameter_table("Parameters (u: standard uncertainty)", geometry, with_start)]
+    tables: list[RenderableType] = [
+        _parameter_table("Parameters (u: standard uncertainty)", geometry, with_start, plain=True)
+    ]
     if beyond:
         tables += ["", _parameter_table("Beyond the arm's geometry", beyond, False)]
     return tables
 
 
-def _parameter_table(title: str, parameters: Sequence[Parameter], with_start: bool) -> RenderableType:
+def _parameter_table(
+    title: str, parameters: Sequence[Parameter], with_start: bool, plain: bool = False
+) -> RenderableType:
+    """plain: lengths and angles alone, whose uncertainties are plain decimals; else in powers of ten where small."""
     with_priors = any(row.prior is not None for row in parameters)
     rows = []
     for row in parameters:
         start = [quantity(row.start, row.u, row.unit)] if with_start else []
         value = quantity(row.value, row.u, row.unit)
         prior = [uncertainty(None if row.prior is None else row.prior["u"])] if with_priors else []
-        rows.append([row.name, *start, value, plain_uncertainty(row.u, row.unit), *prior, row.unit, row.status])
+        u = plain_uncertainty(row.u, row.unit) if plain else uncertainty(row.u)
+        rows.append([row.name, *start, value, u, *prior, row.unit, row.status])
     heads = ["", *(["start"] if with_start else []), "value", "u", *(["prior u"] if with_priors else [])]
     made = table(title, [*heads, "unit", "status"], rows)
     made.columns[-2].justify = made.columns[-1].justify = "left"
