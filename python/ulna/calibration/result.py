@@ -77,7 +77,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     after: Figures
     """The same over all placements, of the calibrated arm."""
     provenance: dict[str, Any]
-    without_far_off: Figures | None = None
+    without_far_off: Figures | None = field(default_factory=lambda: None)  # no class attribute: made on demand
     """As `after`, without the readings that are far off; None where there are none, or no loss let them count less."""
     placements: Sequence[PlacementPose] = field(default_factory=list)
     """Where each standing of an artefact with features was found, in the arm's base frame, with uncertainties."""
