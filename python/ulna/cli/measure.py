@@ -92,6 +92,7 @@ def measure(
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
     """
     from ulna.cli import output
+    from ulna.cli.endings import by_ending
     from ulna.formats.layout import Layout
     from ulna.measuring.measure import measure as measure_to_file
     from ulna.measuring.measure import measure_to_stream
@@ -101,6 +102,8 @@ def measure(
     table |= {"thousands": thousands, "encoding": encoding, "comment": comment, "units_row": units_row}
     table |= {"fill_down": tuple(fill_down or ()), "header": (header or True) if not no_header else False}
     layout = Layout.of_options(column, name, dataset=dataset, **table)
+    if out is not None:
+        by_ending(out, {".csv": "csv", ".txt": "csv", ".parquet": "parquet", "": "csv"}, [], folder=False)
     if out is None:
         choices["layout"] = layout
         found = measure_to_stream(arm, readings, probe, sys.stdout.buffer, json_lines=as_json, **choices)

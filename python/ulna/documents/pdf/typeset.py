@@ -34,7 +34,7 @@ def pictures(data: Mapping[str, Any], fonts: Chosen, ppi: float) -> list[bytes]:
 def _compiled(data: Mapping[str, Any], fonts: Chosen, kind: Literal["pdf", "png"], ppi: float = 144.0) -> list[bytes]:
     import typst
 
-    standards = _standards(data) if kind == "pdf" else []
+    standards: Any = _standards(data) if kind == "pdf" else []
     template = (resources.files("ulna.documents.pdf") / "certificate.typ").read_bytes()
     inputs = {"data": json.dumps(data, ensure_ascii=False, allow_nan=False)}
     with tempfile.TemporaryDirectory(prefix="ulna-fonts-") as folder:
