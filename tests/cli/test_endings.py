@@ -35,7 +35,7 @@ def test_what_cannot_be_written_is_one_sentence(tmp_path: Path, name: str) -> No
         by_ending(tmp_path / name, FORMS, [], folder=True)
     message = str(told.value)
     assert message == f"option -o: {tmp_path / name} ends in {Path(name).suffix.lower()}, which cannot be written; " + (
-        "expected .html or .pdf."
+        "expected .html or .pdf. Correct it."
     )
 
 

@@ -115,5 +115,5 @@ def _travel(arm: Arm) -> list[str]:
     for k, joint in enumerate(arm.joints, start=1):
         low, high = joint.travel_rad or (-3.14, 3.14)
         mark = "" if joint.travel_rad is not None else ": an example"
-        lines.append(f"    [{low!r}, {high!r}], # joint {k}{mark}")
+        lines.append(f"    {toml_value([float(low), float(high)])}, # joint {k}{mark}")
     return [*lines, "]"]
