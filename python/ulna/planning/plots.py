@@ -55,6 +55,7 @@ def draw_stands(
         axes.plot(*points.T, color=BLUE if lit else "0.85", zorder=3 if lit else 1, **style)  # type: ignore[arg-type]
     axes.plot(0, 0, color=VERMILION, marker="s", markersize=8, linestyle="", zorder=4)
     axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.1)
     every = np.concatenate([points for _, points in lines] + [np.zeros((1, 2))])
     size = float(np.ptp(every, axis=0).max())
     halo = [patheffects.withStroke(linewidth=2.5, foreground="white")]
