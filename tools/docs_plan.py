@@ -13,7 +13,8 @@ VARIANTS = {
     "`trials = 2000`": {"trials": "2000"},
     "`seed = 1`": {"seed": "1"},
     "`seed = 2`": {"seed": "2"},
-    "`placements = 10`": {"placements": "10"},
+    "`placements = 100`: any": {"placements": "100"},
+    "`placements = 20`": {"placements": "20"},
     "`placements = 5`": {"placements": "5"},
     **{
         f'`criterion = "{criterion}"`': {"criterion": f'"{criterion}"'}

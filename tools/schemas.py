@@ -24,6 +24,7 @@ from ulna.arm.tables import ArmFile
 from ulna.calibration.result_file import CrossValidationFile, EvaluationFile, ResultFile
 from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.planning.file import PlanFile
+from ulna.planning.result_file import PlanResultFile
 from ulna.simulation.tables import SimulationFile
 from ulna.study.tables import StudyFile
 from ulna.uncertainties.performance_file import PerformanceFile
@@ -38,6 +39,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-study-1": StudyFile,
     "ulna-simulation-1": SimulationFile,
     "ulna-plan-1": PlanFile,
+    "ulna-plan-result-1": PlanResultFile,
     "ulna-task-1": TaskFile,
     "ulna-volume-1": VolumeFile,
     "ulna-performance-1": PerformanceFile,

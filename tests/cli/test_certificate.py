@@ -72,7 +72,7 @@ def test_make_lab_writes_a_file_to_fill_in(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        ([RESULT, LABORATORY, "-o", "c.xml"], ("option --dcc is missing", "ulna report RESULT --pdf")),
+        ([RESULT, LABORATORY, "-o", "c.pdf"], ("ends in .pdf", "expected .xml", "ulna report")),
         ([RESULT, LABORATORY, "--dcc"], ("option -o is missing", "Add -o FILE")),
         ([RESULT, "--dcc", "-o", "c.xml"], ("argument LAB is missing", "--make-lab")),
         (["--dcc", "-o", "c.xml"], ("argument RESULT is missing",)),

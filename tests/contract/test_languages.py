@@ -101,7 +101,7 @@ def test_a_language_that_ulna_does_not_speak_is_refused_in_words() -> None:
 
 
 def trees() -> Iterator[ast.Module]:
-    for room in ("documents", "cli", "verification", "calibration"):
+    for room in ("documents", "cli", "verification", "calibration", "planning"):
         for path in sorted((PACKAGE / room).rglob("*.py")):
             yield ast.parse(path.read_text(encoding="utf-8"))
 

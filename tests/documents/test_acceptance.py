@@ -165,6 +165,16 @@ def test_the_whole_is_said_of_each_state_and_of_what_was_measured(result, tmp_pa
     found = [(each.state, each.verdict) for each in wholes(content.verification.file)]
     assert found == [("as-found", "fail"), ("as-left", "pass")]
     text = "".join(Page(render(content)).words)
+    name = content.verification.file.profile.name
+    for language, states in (
+        ("en", (("as found", "FAIL"), ("as left", "pass"))),
+        ("de", (("vor der Kalibrierung", "NICHT bestanden"), ("nach der Kalibrierung", "bestanden"))),
+    ):
+        said = "".join(Page(render(content, language)).words)
+        for state, verdict in states:
+            assert f"({name}, {state}): {verdict}." in said, (language, state)
+    chinese = "".join(Page(render(content, "zh")).words)
+    assert f"（{name}，校准前状态）：不合格。" in chinese
     assert "On the whole: FAIL (as found)." in text
     assert "On the whole: pass (as left)." in text
     assert "not measured (1)" in text

@@ -197,3 +197,35 @@ def test_codes() -> None:
 )
 def test_what_xml_cannot_hold(text: str, code: str | None) -> None:
     assert unwritable(text) == code
+
+
+def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+    """Every case alone gives one problem; several in one file give them all, of the same kind at the least."""
+    text = EXAMPLE.read_text(encoding="utf-8")
+    for old, new in (
+        ('"EX-2026-0042"', "42"),
+        ('"P07-0815"', '"P07-0815 "'),
+        ('country = "DE"\nbegin', 'country = "UK"\nbegin'),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "lab.toml").write_text(text.replace("[certificate]", "[certificate]\nnumbre = 3"), encoding="utf-8")
+    with pytest.raises(UlnaInputError) as told:
+        load_laboratory(tmp_path / "lab.toml")
+    message = str(told.value)
+    assert message.startswith(f"{tmp_path / 'lab.toml'}: 4 problems:\n- unknown key 'certificate.numbre'")
+    for key in ("'certificate.identifier'", "'item.serial'", "'certificate.country'"):
+        assert f"\n- key {key}" in message
+
+
+def test_all_that_keys_say_together_is_told_at_once(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    text = text.replace('["en", "de"]', '["en", "de", "fr"]')
+    text = text.replace("begin = 2026-03-30", "begin = 2036-03-30").replace("main_signer = true", "main_signer = false")
+    (tmp_path / "lab.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(UlnaInputError) as told:
+        load_laboratory(tmp_path / "lab.toml")
+    message = str(told.value)
+    assert "problems:" in message
+    for part in ("'laboratory.name'", "'equipment.1.name'", "'certificate.end'", "0 persons have main_signer"):
+        assert part in message

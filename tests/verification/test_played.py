@@ -90,13 +90,25 @@ def test_a_wrong_arm_fails_as_found_and_the_right_one_passes_as_left(exact: Path
     text += '\n[[readings]]\nfile = "touches.csv"\nstate = "as-found"\narm = "found.toml"\n'
     (beside / "plan.toml").write_text(text, encoding="utf-8")
     done = run("verify", exact / "arm.toml", beside / "plan.toml", "--json")
-    assert done.returncode == 1
+    assert done.returncode == 0, "it is as it was left"
+    assert "A value fails (as-found)" in done.stderr
+    assert "The exit code is that of the arm as-left: pass." in done.stderr
     document = strict_json(done.stdout)
     assert [(state["state"], state["verdict"]) for state in document["states"]] == [
         ("as-found", "fail"),
         ("as-left", "pass"),
     ]
     assert len(document["provenance"]["arms"]) == 2
+    # the other way round: what was made worse fails
+    other = text.replace('"as-left"', '"as-FOUND"').replace('"as-found"', '"as-left"').replace("as-FOUND", "as-found")
+    other = "\n".join(line.split("   # or")[0] for line in other.splitlines()) + "\n"
+    (beside / "worse.toml").write_text(other)
+    worse = run("verify", exact / "arm.toml", beside / "worse.toml")
+    assert worse.returncode == 1
+    assert "The exit code is that of the arm as-left: FAIL." in worse.stderr
+    # only as found: that decides
+    (beside / "only.toml").write_text(text.split("[[readings]]")[0] + "[[readings]]" + text.split("[[readings]]")[2])
+    assert run("verify", exact / "arm.toml", beside / "only.toml").returncode == 1
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))

@@ -20,7 +20,9 @@ def certificate(
         Path | None,
         typer.Argument(metavar="LAB", help="The laboratory file (TOML): see --make-lab.", show_default=False),
     ] = None,
-    dcc: Annotated[bool, typer.Option("--dcc", help="As XML: PTB's DCC 3.3.0.")] = False,
+    dcc: Annotated[
+        bool, typer.Option("--dcc", help="As XML: PTB's DCC 3.3.0; so says a file ending in .xml too.")
+    ] = False,
     verification: Annotated[
         list[Path] | None,
         typer.Option("--verification", metavar="FILE", help="A verification.json of the same arm; may be repeated."),
@@ -36,8 +38,9 @@ def certificate(
     It is an unsigned draft: the laboratory checks it and signs it. What the laboratory file leaves out is said to be
     missing, never made up. The printed certificate comes from ulna report --pdf, from the same laboratory file.
 
-    Example: [bold]ulna certificate out/result.json lab.toml --dcc -o certificate.xml[/bold]
+    Example: [bold]ulna certificate out/result.json lab.toml -o certificate.xml[/bold]
     """
+    from ulna.cli.endings import by_ending
     from ulna.formats.output import refuse_inputs, write_file
     from ulna.ground.errors import UlnaInputError
 
@@ -60,10 +63,12 @@ def certificate(
             "and a laboratory file. Give both, or write a laboratory file with --make-lab."
         )
     if not dcc:
-        raise UlnaInputError(
-            "option --dcc is missing; expected it, for XML is the one form that this command writes. Add --dcc, or "
-            "print a certificate with ulna report RESULT --pdf."
-        )
+        if out.suffix.lower() == ".pdf":
+            raise UlnaInputError(
+                f"option -o: {out} ends in .pdf, and this command writes XML; expected .xml. Print a certificate with "
+                f"ulna report {result} --lab {laboratory} -o {out}."
+            )
+        by_ending(out, {".xml": "dcc"}, [], folder=False)
     from ulna.cli import output
     from ulna.cli.printed.certificate import certificate_report
     from ulna.documents.dcc.document import dcc_certificate

@@ -17,8 +17,9 @@ app = typer.Typer(
     rich_markup_mode=None,
     name="import",
     help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
-    "Any other table is named in a study as it is (keys separator, decimal, sheet, dataset, columns of [[readings]]); "
-    "describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a table).",
+    "Any other table is named in a study as it is (keys separator, decimal, sheet, dataset, columns of "
+    "[\\[readings]]); describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a "
+    "table).",
     no_args_is_help=True,
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -23,13 +23,11 @@ def report(
             "-o",
             "--out",
             metavar="PATH",
-            help="File to write, or a folder for report.html, report.pdf.",
+            help="File to write, its form by its ending, or a folder for report.html, report.pdf.",
             show_default=False,
         ),
     ],
-    as_html: Annotated[
-        bool, typer.Option("--html", help="One HTML file; without another format this is meant.")
-    ] = False,
+    as_html: Annotated[bool, typer.Option("--html", help="One HTML file; of a folder meant without another.")] = False,
     as_pdf: Annotated[
         bool, typer.Option("--pdf", help="A calibration certificate on paper (PDF); what --lab names is on it.")
     ] = False,
@@ -74,15 +72,17 @@ def report(
 
     With --json it prints which files were written and what is missing.
 
-    Example: [bold]ulna report out/result.json --html -o report.html[/bold]
+    Example: [bold]ulna report out/result.json -o report.html[/bold]
     """
     from ulna.cli import output
+    from ulna.cli.endings import by_ending
     from ulna.documents.gather import gather
     from ulna.documents.languages.languages import LANGUAGES
     from ulna.documents.write import targets, write_report
 
     one_of("--language", language, tuple(LANGUAGES))
-    formats = [name for name, asked in (("html", as_html), ("pdf", as_pdf)) if asked]
+    asked = [name for name, given in (("html", as_html), ("pdf", as_pdf)) if given]
+    formats = by_ending(out, {".html": "html", ".pdf": "pdf"}, asked, folder=True)
     wanted = targets(out, formats or ["html"], force)
     with output.progress_bar() as progress:
         content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)

@@ -66,6 +66,7 @@ def show(
     Example: [bold]ulna show arm.toml --pose "0,30,-45,0,60,0" --open[/bold]
     """
     from ulna.cli import output
+    from ulna.cli.endings import by_ending
     from ulna.cli.printed.show import lines
     from ulna.documents.arm_page.page import render
     from ulna.documents.languages.languages import LANGUAGES
@@ -84,6 +85,8 @@ def show(
             one_of(option, value, known)
     found = read_drawing(arm, Asked(convention, length_unit, angle_unit, tip, tip_link, base_link))
     q_rad = start_pose(found.arm) if pose is None else pose_of(pose, found.arm)
+    if out is not None:
+        by_ending(out, {".html": "html", ".htm": "html"}, [], folder=False)
     target = out or Path(f"{(arm.resolve().name if arm.is_dir() else arm.stem)}.html")
     refuse_inputs([target], [found.file])
     drawn = scene(found.arm, probe)

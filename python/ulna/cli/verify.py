@@ -44,7 +44,8 @@ def verify(
 
     Readings are those of the arm's encoders, or x, y, z of any arm, whoever made it; then ARM is left out. Each figure
     is printed with its formula, its limit and what the decision rule says; what was measured otherwise than the profile
-    counts is told. With -o it writes verification.json, values.csv and a picture. Exit code 1 where a value fails.
+    counts is told. With -o it writes verification.json, values.csv and a picture. Exit code 1 where a value of the arm
+    as left fails; where it was tested as found only, of the arm as found.
 
     Example: [bold]ulna verify arm.toml plan.toml -o tested[/bold]
 
@@ -68,7 +69,7 @@ def verify(
 
 def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -> None:
     from ulna.cli import output
-    from ulna.cli.printed.verification import verification_report
+    from ulna.cli.printed.verification import WORDS, verification_report
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.verification.verify import FILE, PICTURES, TABLE
     from ulna.verification.verify import verify as run_verify
@@ -88,9 +89,14 @@ def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -
         output.print_renderable(*verification_report(found))
     if out is not None:
         output.say(f"Written to {out}: {', '.join(found.files)}")
-    if found.verdict == "fail":
-        failed = [state.state for state in found.states if state.verdict == "fail"]
-        output.say(f"A value fails ({' and '.join(failed)}): see the table above.")
+    failed = [state.state for state in found.states if state.verdict == "fail"]
+    if not failed:
+        return
+    decides = found.standing.state
+    output.say(f"A value fails ({' and '.join(failed)}): see the table above.")
+    if len(found.states) > 1:
+        output.say(f"The exit code is that of the arm {decides}: {WORDS[found.standing.verdict]}.")
+    if decides in failed:
         raise typer.Exit(1)
 
 

@@ -94,6 +94,22 @@ def _filled(model: type[Model], path: Path, validate: Callable[[], Model]) -> Mo
         raise UlnaInputError(f"{path}: {_explain(first, model)}{more}") from None
 
 
+def fill_or_list(model: type[Model], document: Any) -> tuple[Model | None, list[str]]:
+    """A document as a typed model, or all that is wrong with it, each in words, unknown keys first."""
+    try:
+        return model.model_validate(document), []
+    except ValidationError as error:
+        details = sorted(error.errors(include_url=False), key=lambda detail: detail["type"] != "extra_forbidden")
+        return None, [_explain(detail, model) for detail in details]
+
+
+def listed(path: Path, problems: Sequence[str]) -> UlnaInputError:
+    """One message for all that is wrong with a file, problem by problem."""
+    if len(problems) == 1:
+        return UlnaInputError(f"{path}: {problems[0]}")
+    return UlnaInputError(f"{path}: {len(problems)} problems:" + "".join(f"\n- {each}" for each in problems))
+
+
 def check_kind(table: Any, key: str, known: Sequence[str], path: Path) -> None:
     """What kind a table is of, before its other keys are looked at. Raises UlnaInputError where none knows it."""
     if not isinstance(table, dict):

@@ -36,6 +36,17 @@ def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
     return found
 
 
+def motions(own: F64, placed_mm: F64) -> tuple[F64, F64]:
+    """(K, 3) points of a body and (S, K, 3) where they are → (S, 3) its origin and (S, 3, 3) its axes as rows: the best
+    motions. What points on a line leave open is any."""
+    middle = own.mean(axis=0)
+    there = placed_mm.mean(axis=1)
+    cross = np.einsum("skj,ki->sji", placed_mm - there[:, None], own - middle)
+    axes = rotations(cross).transpose(0, 2, 1)
+    origin: F64 = there - middle @ axes
+    return origin, axes
+
+
 def _means(values: F64, group: I64, counts: I64) -> F64:
     """(N, k) → (groups, k)."""
     return np.stack([np.bincount(group, column, len(counts)) for column in values.T], axis=1) / counts[:, np.newaxis]

@@ -7,8 +7,12 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-# Okabe and Ito's palette (2008): blue, vermilion, bluish green, and a grey for what is given.
-BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#595959"
+# Okabe and Ito's palette (2008), the orange darker so that words can have it: one meaning each, in every picture
+# and table. Blue: readings, values, after. Vermilion: outliers, fails, what is lost. Green: passes, what the noise
+# explains. Orange: undecided, the guard band. Grey: before, limits, what is given.
+BLUE, VERMILION, GREEN, ORANGE, GREY = "#0072B2", "#D55E00", "#009E73", "#9A6700", "#595959"
+#: verdict → colour
+OF_VERDICT: dict[str | None, str] = {"pass": GREEN, "undecided": ORANGE, "fail": VERMILION, None: GREY}
 
 STYLE: Any = {
     "font.size": 10,

@@ -63,6 +63,9 @@ LOOKS: dict[str, Look] = {
     "angle": Look(stroke="size", width=2.0),
     "angle-name": _letters("size", 13.0, bold=True),
     "reference": Look(stroke="size", width=1.0, dash=(3.0, 3.0)),
+    "artefact": Look(fill="z", stroke="paper", width=0.6),
+    "artefact-end": Look(fill="z", stroke="paper", width=0.6),
+    "artefact-name": _letters("ink", 16.0, bold=True),
     "scale": Look(stroke="soft", width=1.6),
     "scale-name": _letters("soft", 11.0),
 }

@@ -59,7 +59,9 @@ def draw(spec: PlanSpec, mover: Mover, probe: int, rng: np.random.Generator, cou
         postures = max(2, int(np.ceil(np.sqrt(each))))
     else:
         postures = POSTURES * what.touches if what.outward is None else ON_SURFACE
-    at_mm, q_rad = places(what.standing(spec), mover, probe, places_of(spec) if count is None else count, postures, rng)
+    at_mm, q_rad = places(
+        what.standing(spec, mover.arm), mover, probe, places_of(spec) if count is None else count, postures, rng
+    )
     return combine(at_mm, q_rad, each, what.touches, rng)
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.arm import Arm
 from ulna.arm.stated import PositiveEach, TravelTable, VolumeTable, encoder_of, travel_of, volume_of
@@ -15,7 +15,9 @@ from ulna.artefacts.tables import Place
 from ulna.formats.models import Strict, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
+from ulna.ground.errors import UlnaInputError
 from ulna.planning.spec import Criterion, PlanSpec
+from ulna.planning.within import Within
 from ulna.study.study import Study
 
 WHAT = 'a plan file (TOML, format = "ulna-plan/1")'
@@ -57,6 +59,23 @@ class PlanTable(Strict):
     seed: Annotated[int, Field(ge=0, le=2**62)] = 0
 
 
+class WithinTable(Strict):
+    """Where a person can put the artefact, in the file's length unit."""
+
+    table: float | None = None
+    """z of the table that the base stands on, in the base frame (0)."""
+    low: float | None = None
+    """Lowest height of a feature above the table (0)."""
+    high: float | None = None
+    """Highest (1000 mm)."""
+    aside: Annotated[float, Field(ge=0)] | None = None
+    """Nothing is nearer to the base's z axis (150 mm)."""
+
+
+def _within_kind(within: Any) -> str:
+    return "<word>" if isinstance(within, str) else "<table>"
+
+
 class PlanFile(Strict):
     """What to plan: `ulna-plan/1`."""
 
@@ -71,7 +90,15 @@ class PlanFile(Strict):
     volume: VolumeTable | None = None
     """Where lengths and points will be measured."""
     room: VolumeTable | None = None
-    """Where the artefact may stand."""
+    """Where the artefact may stand; stated, it takes the place of `within`."""
+    within: (
+        Annotated[
+            Annotated[Literal["reach"], Tag("<word>")] | Annotated[WithinTable, Tag("<table>")],
+            Discriminator(_within_kind),
+        ]
+        | None
+    ) = None
+    """What the table, the base and a person's reach leave; "reach": all that the arm reaches."""
 
 
 def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
@@ -104,8 +131,24 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
         travel_rad=travel_of(file.travel, arm, units, path),
         volume_mm=volume_of(file.volume, units, path),
         room_mm=volume_of(file.room, units, path, "room"),
+        within=_within(file, path),
         trials=table.trials,
         seed=table.seed,
         label=str(path),
         files=tuple(files),
     )
+
+
+def _within(file: PlanFile, path: Path) -> Within | None:
+    """As stated, else what is usual unless there is a room. Raises UlnaInputError."""
+    table = file.within
+    if isinstance(table, str) or (table is None and file.room is not None):
+        return None
+    stated = {} if table is None else table.model_dump(exclude_none=True)
+    within = Within(**{f"{key}_mm": value * file.units.mm for key, value in stated.items()})
+    if not within.low_mm < within.high_mm:
+        raise UlnaInputError(
+            f"{path}: key 'within': heights above the table from {within.low_mm:g} mm to {within.high_mm:g} mm; "
+            "expected low below high. Correct one of them."
+        )
+    return within

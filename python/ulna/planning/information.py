@@ -33,13 +33,16 @@ _BLOCK = 5_000
 
 def candidate_rows(spec: PlanSpec, arm: Arm, probe: int, free: I64, candidates: Candidates) -> F64:
     """(N, k, free) rows of every candidate."""
-    parts = []
-    for start in range(0, len(candidates), _BLOCK):
-        some = np.arange(start, min(start + _BLOCK, len(candidates)))
-        rows = _whitened(problem_of(arm, spec, probe, candidates.poses(some)), free)
-        # standing by standing, and each leaves as many
-        parts.append(rows.reshape(len(some), -1, len(free)))
-    return np.concatenate(parts)
+    starts = range(0, len(candidates), _BLOCK)
+    some = (np.arange(start, min(start + _BLOCK, len(candidates))) for start in starts)
+    return np.concatenate([candidate_rows_of(spec, arm, probe, free, candidates.poses(each)) for each in some])
+
+
+def candidate_rows_of(spec: PlanSpec, arm: Arm, probe: int, free: I64, q_rad: F64) -> F64:
+    """(N, k, free) rows of measurements in (N, K, t, n) postures."""
+    rows = _whitened(problem_of(arm, spec, probe, q_rad), free)
+    # standing by standing, and each leaves as many
+    return rows.reshape(len(q_rad), -1, len(free))
 
 
 def taken_rows(spec: PlanSpec, study: Study, arm: Arm, free: I64) -> F64:

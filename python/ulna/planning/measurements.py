@@ -29,25 +29,30 @@ def problem_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> _core.Proble
     """The core's problem of measurements (count, K, t, n), each a placement of its own, readings exact."""
     import ulna._core as _core
 
+    problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
+    readings = readings_of(arm, spec, probe, q_rad)
+    balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
+    kind_of(spec.artefact).enter(problem, as_certified(readings), balls_mm, [arm.conditions(len(readings))])
+    return problem
+
+
+def readings_of(arm: Arm, spec: PlanSpec, probe: int, q_rad: F64) -> Readings:
+    """The same measurements as readings, placements numbered from 1."""
     count, features, touches, n = q_rad.shape
     per = features * touches
-    problem = _core.Problem(arm.core, spec.encoder_rad, spec.seat_mm)
     kind = kind_of(spec.artefact)
     each = np.tile(np.repeat(np.arange(features), touches), count)
-    readings = Readings(
+    return Readings(
         artefact=spec.artefact,
         q_rad=np.ascontiguousarray(q_rad.reshape(-1, n)),
         p_rad=None,
         length_mm=_measured_mm(spec, arm, probe, count),
         probe=np.full(count * per, probe, dtype=np.int64),
         feature=each if kind.named else np.zeros_like(each),
-        placement=Labels(np.repeat(np.arange(count), per), [str(number) for number in range(count)]),
+        placement=Labels(np.repeat(np.arange(count), per), [str(number + 1) for number in range(count)]),
         row=np.arange(1, count * per + 1),
         file=np.zeros(count * per, dtype=np.int64),
     )
-    balls_mm = np.array([each.ball_mm or 0.0 for each in arm.probes.values()])
-    kind.enter(problem, as_certified(readings), balls_mm, [arm.conditions(len(readings))])
-    return problem
 
 
 def _measured_mm(spec: PlanSpec, arm: Arm, probe: int, count: int) -> F64 | None:

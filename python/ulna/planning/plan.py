@@ -25,6 +25,7 @@ from ulna.planning.targets import Tests
 from ulna.planning.touchable import touchable
 from ulna.planning.trial import Trial, carry_out
 from ulna.simulation.mover import Mover, travel_or_limits
+from ulna.simulation.places import postures_on
 from ulna.work.pieces import Threads, Workers
 
 PAPER = 101
@@ -147,7 +148,8 @@ def _few_places(
     if what.outward is not None:
         postures = ON_SURFACE * POSTURES
     points = np.repeat(at_mm.reshape(-1, 3), postures, axis=0)
-    q_rad, reached = asked.mover.on_points(points, np.full(len(points), probe), {}, int(rng.integers(2**63)))
+    standing = what.standing(spec, asked.arm)
+    q_rad, reached = postures_on(standing, asked.mover, points, probe, {}, int(rng.integers(2**63)))
     q_rad = q_rad.reshape(len(best), features, postures, -1)
     # a posture that was not found again gives way to one that was: they are all of one feature
     for k, j in zip(*np.nonzero(~reached.reshape(q_rad.shape[:3]).all(axis=2)), strict=True):

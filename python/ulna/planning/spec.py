@@ -9,6 +9,7 @@ from typing import Literal
 from ulna.arm.stated import Box
 from ulna.artefacts.artefact import Artefact
 from ulna.ground.arrays import F64
+from ulna.planning.within import Within
 from ulna.study.study import Study
 
 Criterion = Literal["D", "A", "E", "G", "length", "length-worst", "point"]
@@ -50,6 +51,8 @@ class PlanSpec:
     """Corners of the box in which lengths and points will be measured; None: all that the arm reaches."""
     room_mm: Box | None = None
     """Corners of the box in which the artefact may stand; None: all that the arm reaches."""
+    within: Within | None = field(default_factory=Within)
+    """What the table, the base and a person's reach leave; None: all that the arm reaches."""
     trials: int = 200
     """Calibrations on the plan, and as many on random measurements, that show by simulation what it gains; 0: none."""
     seed: int = 0

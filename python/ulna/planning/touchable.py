@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.data import ArmData
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.touching import Touches
 from ulna.ground.arrays import F64
@@ -34,10 +36,14 @@ class Touchable:
         """Whether two places are touched once each, as of a bar: then all pairs of postures are candidates."""
         return len(self.at_mm) == 2 and self.touches == 1
 
-    def standing(self, spec: PlanSpec) -> Standing:
-        """Somewhere in the plan's room."""
+    def standing(self, spec: PlanSpec, arm: ArmData) -> Standing:
+        """Somewhere in the plan's room, where a person can put it and hold the arm."""
         name = f"{spec.label}: artefact '{spec.artefact.name}'"
-        return Standing(self.at_mm, name, spec.artefact.frame == "arm", spec.room_mm)
+        within, fixed = spec.within, spec.artefact.frame == "arm"
+        if within is None:
+            return Standing(self.at_mm, name, fixed, spec.room_mm)
+        holds = None if fixed else within.holds
+        return Standing(self.at_mm, name, fixed, spec.room_mm, holds, partial(within.bears, arm))
 
 
 def spread_of(spec: PlanSpec, arm: Arm, probe: int) -> Touches:

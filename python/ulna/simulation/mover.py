@@ -70,6 +70,21 @@ class Mover:
                 q_rad[there], reached[there] = self._under(q_rad[there], points_mm[there], index, at)
         return q_rad, reached
 
+    def nearby(self, q_rad: F64, points_mm: F64, probe: I64, conditions: Conditions, seed: int) -> tuple[F64, Bool]:
+        """(N, n) postures with the tip on (N, 3) points, each near a given one; where there is none near, any other.
+
+        And which points were reached. probe (N,).
+        """
+        low, high = self.travel_rad.T
+        found, reached = np.clip(q_rad, low, high), np.zeros(len(points_mm), dtype=bool)
+        for index in np.unique(probe).tolist():
+            own = np.flatnonzero(probe == index)
+            found[own], reached[own] = self._under(found[own], points_mm[own], index, some_of(conditions, own))
+        rest = np.flatnonzero(~reached)
+        if len(rest):
+            found[rest], reached[rest] = self.on_points(points_mm[rest], probe[rest], some_of(conditions, rest), seed)
+        return found, reached
+
     def _under(self, q_rad: F64, points_mm: F64, probe: int, conditions: Conditions) -> tuple[F64, Bool]:
         """The same postures under conditions: Newton's steps of least motion, joints at their ends staying there."""
         low, high = self.travel_rad.T

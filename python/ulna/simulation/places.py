@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from ulna.arm.conditions import Conditions, some_of
 from ulna.arm.stated import Box
-from ulna.ground.arrays import F64
+from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import turns
 
 BARREN = 20
 """Rounds of drawing that find no place before it is said that there is none."""
+OTHERS = 8
+"""Rounds of other elbows and wrists for a posture that may not be."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,10 @@ class Standing:
     """Whether they stand in the arm's frame, where they are."""
     box_mm: Box | None = None
     """Where all of them must be; None: wherever the arm reaches."""
+    holds: Callable[[F64], Bool] | None = None
+    """(N, K, 3) → (N,) whether they may stand so; None: anyhow."""
+    bears: Callable[[F64], Bool] | None = None
+    """(N, n) → (N,) whether the arm may be in such poses; None: in all."""
 
 
 def places(
@@ -52,7 +60,7 @@ def places(
         points_mm = np.repeat(placed_mm.reshape(-1, 3), postures, axis=0)
         conditions = mover.arm.conditions(len(points_mm), temperature_c)
         seed = int(rng.integers(2**63))
-        q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), conditions, seed)
+        q_rad, reached = postures_on(standing, mover, points_mm, probe, conditions, seed)
         shape = (len(placed_mm), len(features_mm), postures)
         whole = np.flatnonzero(reached.reshape(shape).all(axis=(1, 2)))
         at.append(placed_mm[whole])
@@ -67,6 +75,26 @@ def places(
     return np.concatenate(at), np.concatenate(poses)
 
 
+def postures_on(
+    standing: Standing, mover: Mover, points_mm: F64, probe: int, conditions: Conditions, seed: int
+) -> tuple[F64, Bool]:
+    """(N, n) postures that may be with the tip on (N, 3) points, elbow and wrist at random, and where there is one."""
+    q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), conditions, seed)
+    if standing.bears is None:
+        return q_rad, reached
+    for again in range(1, OTHERS + 1):
+        wrong = np.flatnonzero(reached)
+        wrong = wrong[~standing.bears(q_rad[wrong])]
+        if not len(wrong):
+            return q_rad, reached
+        own = some_of(conditions, wrong)
+        q_rad[wrong], reached[wrong] = mover.on_points(
+            points_mm[wrong], np.full(len(wrong), probe), own, (seed + again) % 2**63
+        )
+    reached[reached] = standing.bears(q_rad[reached])
+    return q_rad, reached
+
+
 def _near(standing: Standing, mover: Mover, probe: int, most: int, rng: np.random.Generator) -> F64:
     """At most so many places at which all points seem to be within reach."""
     drawn = 8 * most + 200
@@ -78,6 +106,8 @@ def _near(standing: Standing, mover: Mover, probe: int, most: int, rng: np.rando
         good &= mover.near_reach(np.ascontiguousarray(at_mm[:, k]), probe)
         if box is not None:
             good &= ((at_mm[:, k] >= box[0]) & (at_mm[:, k] <= box[1])).all(axis=1)
+    if standing.holds is not None:
+        good &= standing.holds(at_mm)
     kept: F64 = at_mm[good][:most]
     return kept
 

@@ -17,6 +17,16 @@ from ulna.study.data import FitOptions
 
 
 @dataclass(frozen=True)
+class Followed:
+    """A plan that the placements follow, P of T touches each."""
+
+    points_mm: F64
+    """(P, T, 3) where each touch of the artefact, as it is stated, is in the base frame."""
+    q_rad: F64
+    """(P, T, n) postures to begin from: the nearest that is on the true point is taken."""
+
+
+@dataclass(frozen=True)
 class Touching:
     """An artefact, and how it is touched."""
 
@@ -30,6 +40,8 @@ class Touching:
     """With which it is touched; none: the arm's only one."""
     size_mm: tuple[float, float] = (200.0, 200.0)
     """How large a part is touched of what has no end of its own, as its kind understands it."""
+    followed: Followed | None = None
+    """None: it stands anywhere, and is touched in any posture."""
 
 
 @dataclass(frozen=True)

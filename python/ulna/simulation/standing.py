@@ -8,11 +8,13 @@ import numpy as np
 
 from ulna.arm.conditions import CONDITIONS, TEMPERATURE, Condition
 from ulna.artefacts.touching import Touches
+from ulna.geometry.rigid import motions
 from ulna.ground.arrays import F64, I64, Bool, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import turns
-from ulna.simulation.spec import Simulation, Touching
+from ulna.simulation.spec import Followed, Simulation, Touching
+from ulna.simulation.touches import touches_of
 
 #: rounds of drawing places, one after the other, that find none before it is said that there are too few
 BARREN = 20
@@ -46,6 +48,8 @@ def stand(
     key: the artefact's number; with the seed it gives the draws. Raises UlnaInputError where too few places are found.
     """
     rng = np.random.default_rng([simulation.seed, key])
+    if touching.followed is not None:
+        return _as_planned(simulation, mover, touching, touches, touching.followed, rng)
     artefact, count, per = touching.artefact, touching.placements, len(touches.probe)
     parts: list[Standings] = []
     missing, barren = count, 0
@@ -72,6 +76,31 @@ def stand(
             "placements, a larger volume or a wider travel."
         )
     return _joined(parts)
+
+
+def _as_planned(
+    simulation: Simulation,
+    mover: Mover,
+    touching: Touching,
+    touches: Touches,
+    followed: Followed,
+    rng: np.random.Generator,
+) -> Standings:
+    """Where the plan has it, in postures as near to the plan's as there are. Raises UlnaInputError."""
+    if touching.artefact.frame == "arm":
+        origin_mm, axes = np.zeros((touching.placements, 3)), np.tile(np.eye(3), (touching.placements, 1, 1))
+    else:
+        stated = touches_of(touching, touching.artefact, mover.arm, touches.probe[:1].tolist())
+        origin_mm, axes = motions(stated.centre_mm, followed.points_mm)
+    found, reached = _touch(simulation, mover, touches, origin_mm, axes, rng, followed.q_rad)
+    if not reached.all():
+        worst = int(np.flatnonzero(~reached.all(axis=1))[0])
+        raise UlnaInputError(
+            f"{simulation.label}: artefact '{touching.artefact.name}': placement {worst + 1} of the plan is out of the "
+            f"true arm's reach ({int((~reached).sum())} touches of {reached.size} are); expected an arm that is near "
+            "to the plan's. Name another plan or another arm."
+        )
+    return found
 
 
 def _candidates(
@@ -104,9 +133,16 @@ def _candidates(
 
 
 def _touch(
-    simulation: Simulation, mover: Mover, touches: Touches, origin_mm: F64, axes: F64, rng: np.random.Generator
+    simulation: Simulation,
+    mover: Mover,
+    touches: Touches,
+    origin_mm: F64,
+    axes: F64,
+    rng: np.random.Generator,
+    start_rad: F64 | None = None,
 ) -> tuple[Standings, Bool]:
-    """Touch the artefact in (P, 3) places, and whether each touch (P, T) was reached."""
+    """Touch the artefact in (P, 3) places, and whether each touch (P, T) was reached. start_rad: (P, T, n) postures to
+    begin from; None: anyhow."""
     places, per = len(origin_mm), len(touches.probe)
     noise_mm = simulation.seat_mm * rng.standard_normal((places, per, 3))
     missed, off_mm = _missed(simulation, touches, axes, rng)
@@ -119,7 +155,11 @@ def _touch(
     conditions = arm.conditions(places * per, **said)
     at_mm = origin_mm[:, None] + touches.centre_mm @ axes + noise_mm + off_mm
     seed = int(rng.integers(2**63))
-    q_rad, reached = mover.on_points(at_mm.reshape(-1, 3), np.tile(touches.probe, places), conditions, seed)
+    points_mm, probe = at_mm.reshape(-1, 3), np.tile(touches.probe, places)
+    if start_rad is None:
+        q_rad, reached = mover.on_points(points_mm, probe, conditions, seed)
+    else:
+        q_rad, reached = mover.nearby(start_rad.reshape(-1, arm.n), points_mm, probe, conditions, seed)
     touched = Standings(origin_mm, axes, drawn, q_rad.reshape(places, per, -1), missed, off_mm)
     return touched, reached.reshape(places, per)
 

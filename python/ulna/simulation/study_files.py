@@ -30,7 +30,7 @@ def names_for(artefacts: Iterable[Artefact]) -> list[str]:
     for artefact in artefacts:
         names.append(f"{artefact.name}.csv")
         if kind_of(artefact).features_file:
-            names.append(_features_file(artefact))
+            names.append(features_file(artefact))
     return names
 
 
@@ -55,7 +55,7 @@ def study_toml(study: Study, counts: bool) -> str:
             table["probe"] = list(study.arm.probes)[int(group.probe[0])]
         lines += _table("[[readings]]", table)
     for group in study.readings:
-        lines += _table(f"[artefact.{toml_key(group.artefact.name)}]", _artefact_table(group.artefact))
+        lines += _table(f"[artefact.{toml_key(group.artefact.name)}]", artefact_table(group.artefact))
     if study.noise is not None:
         lines += _table("[noise]", _noise_table(study.noise))
     usual = FitOptions()
@@ -70,7 +70,7 @@ def write_tables(study: Study, step_rad: F64 | None, folder: Path) -> None:
     for group in study.readings:
         readings_table(group, list(study.arm.probes), step_rad).write_csv(folder / f"{group.artefact.name}.csv")
         if kind_of(group.artefact).features_file:
-            features_table(group.artefact).write_csv(folder / _features_file(group.artefact))
+            features_table(group.artefact).write_csv(folder / features_file(group.artefact))
 
 
 def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> pl.DataFrame:
@@ -106,7 +106,8 @@ def features_table(artefact: Artefact) -> pl.DataFrame:
     return pl.DataFrame(columns)
 
 
-def _features_file(artefact: Artefact) -> str:
+def features_file(artefact: Artefact) -> str:
+    """Name of the table of its features, beside the study."""
     return f"{artefact.name}-features.csv"
 
 
@@ -114,8 +115,9 @@ def _several_probes(group: Readings) -> bool:
     return bool((group.probe != group.probe[0]).any())
 
 
-def _artefact_table(artefact: Artefact) -> dict[str, Any]:
-    table: dict[str, Any] = {"kind": artefact.kind, **kind_of(artefact).written(artefact, _features_file(artefact))}
+def artefact_table(artefact: Artefact) -> dict[str, Any]:
+    """Its table in a study file, mm; features are in `features_file`."""
+    table: dict[str, Any] = {"kind": artefact.kind, **kind_of(artefact).written(artefact, features_file(artefact))}
     if artefact.u_mm and artefact.feature_u_mm is None:
         table["u"] = artefact.u_mm
     if artefact.fitted:

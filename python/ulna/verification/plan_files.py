@@ -61,7 +61,7 @@ def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) ->
             lines.append(_line(toml_key(figure.key), filled.mpe.get(figure.key), example))
     for artefact in artefacts_of(profile.file):
         known = filled.artefacts.get(artefact.name, {})
-        keys = artefact.keys()
+        keys = artefact.keys(filled.range_mm)
         lines += ["", f"[artefact.{toml_key(artefact.name)}]"] if keys else []
         lines += [_line(key.name, known.get(key.name, key.value), key.example) for key in keys]
     temperature = filled.temperature or {}

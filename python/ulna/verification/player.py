@@ -63,7 +63,7 @@ def play(
     travel = np.array([joint.travel_rad or (-np.pi, np.pi) for joint in truth.joints])
     margin = 6.0 * encoder_rad
     mover = Mover(truth, travel + np.array([margin, -margin]))
-    range_mm = round(2.0 * REACHED * truth.core.reach_mm(0), -1)
+    range_mm = range_of(truth)
     # a ball stands beside every virtual arm, so that one seed plays the same touches whether it is used or not
     wanted = {each.name: each for each in (WantedBall(), *artefacts_of(profile.file))}
     stated, true_mm = _stated(wanted.values(), range_mm, rng)
@@ -86,6 +86,11 @@ def play(
         fixture_mm=FIXTURE_MM,
     )
     return Played(filled, errors.read(np.concatenate(parts), rng), true_mm)
+
+
+def range_of(arm: Arm) -> float:
+    """The diameter of the measuring range that a maker would state of such an arm, mm."""
+    return round(2.0 * REACHED * arm.core.reach_mm(0), -1)
 
 
 def _stated(

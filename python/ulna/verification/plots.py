@@ -10,12 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ulna.ground.arrays import F64
-from ulna.ground.style import BLUE, GREEN, GREY, STYLE, VERMILION, save_picture
+from ulna.ground.style import GREY, OF_VERDICT, ORANGE, STYLE, save_picture
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.outcome import FigureResult, StateResult
 
-MARKS = {"pass": ("o", BLUE, "passes"), "undecided": ("D", GREEN, "undecided"), "fail": ("X", VERMILION, "fails")}
-NO_VERDICT = ("o", GREY, "no limit stated")
+MARKS = {
+    "pass": ("o", OF_VERDICT["pass"], "passes"),
+    "undecided": ("D", OF_VERDICT["undecided"], "undecided"),
+    "fail": ("X", OF_VERDICT["fail"], "fails"),
+}
+NO_VERDICT = ("o", OF_VERDICT[None], "no limit stated")
 
 
 def draw_lengths(states: list[StateResult], folder: Path) -> None:
@@ -83,7 +87,7 @@ def _limits(axes: Axes, found: FigureResult, length: F64) -> None:
                 at,
                 sign * (limit - guard),
                 sign * (limit + guard),
-                color=GREY,
+                color=ORANGE,
                 alpha=0.22,
                 linewidth=0,
                 label="guard band ±g" if sign > 0 else None,

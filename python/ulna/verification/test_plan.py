@@ -8,11 +8,12 @@ from typing import Any
 
 import polars as pl
 
+from ulna.arm.arm import Arm
 from ulna.arm.given import ArmLike, as_arm
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.verification.plan_files import EMPTY, PLAN, TOUCHES, Filled, plan_toml, touches_table
-from ulna.verification.player import play
+from ulna.verification.player import play, range_of
 from ulna.verification.profile import Profile, load_profile
 
 FILES = (PLAN, TOUCHES)
@@ -53,7 +54,12 @@ def make_test_plan(profile: str, arm: ArmLike | None = None, beside: Path = Path
     found = load_profile(profile, beside, "option --make-plan")
     names = ["x", "y", "z"] if arm is None else [f"q{k + 1}" for k in range(arm.n)]
     table = touches_table(found, {}).with_columns(pl.lit(None, dtype=pl.Float64).alias(name) for name in names)
-    return TestPlan(found, EMPTY, arm is not None, table)
+    return TestPlan(found, EMPTY if arm is None else _of_arm(arm), arm is not None, table)
+
+
+def _of_arm(arm: Arm) -> Filled:
+    """What an arm file says of a plan already: its name, and the measuring range that such a reach has."""
+    return Filled(arm=arm.name, range_mm=range_of(arm))
 
 
 def play_test_plan(

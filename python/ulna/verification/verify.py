@@ -46,6 +46,11 @@ class Verification(Shown):
         return worst_verdict([state.verdict for state in self.states])
 
     @property
+    def standing(self) -> StateResult:
+        """The state that the arm is in now: as left where it was tested so, else as found."""
+        return max(self.states, key=lambda state: state.state == "as-left")
+
+    @property
     def arm(self) -> str:
         """What reports call it."""
         named = self.plan.file.arm

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from rich.console import RenderableType
+from rich.text import Text
 
 from ulna.cli.printed.tables import table
 from ulna.planning.outcome import Plan
@@ -50,7 +51,7 @@ def plan_report(plan: Plan) -> list[RenderableType]:
         "",
         table("Observability indices", ("scaled by the candidates", "planned", "random"), indices),
         "",
-        _words(plan),
+        Text(_words(plan)),
     ]
     return parts
 
@@ -66,4 +67,20 @@ def _words(plan: Plan) -> str:
     known = f"{plan.determined} of {plan.free} free parameters' directions are determined"
     lost = " (the others only move the base frame, or no candidate sees them)" if plan.determined < plan.free else ""
     own = " What is not known of the artefact itself comes on top." if plan.spec.artefact.u_mm else ""
-    return f"{gain}. {known}{lost}.{own}"
+    return f"{gain}. {known}{lost}.{own}\n{_room(plan)}"
+
+
+def _room(plan: Plan) -> str:
+    """Where the artefact may stand, and how to change it."""
+    spec, within = plan.spec, plan.spec.within
+    if spec.artefact.frame == "arm":
+        return "The artefact stands where its coordinates say."
+    box = " in the stated room" if spec.room_mm is not None else ""
+    if within is None:
+        return f"The artefact stands anywhere within reach{box}: nobody asked for the table or a person's reach."
+    low, high = (f"{value:g}" for value in (within.low_mm, within.high_mm))
+    return (
+        f"The artefact stands{box} {low} mm to {high} mm above the table (z = {within.table_mm:g} mm in the base "
+        f"frame), {within.aside_mm:g} mm or more from the base's axis, and the arm's joints are above the table. "
+        "[within] in the plan file changes this; --anywhere switches it off."
+    )

@@ -18,6 +18,7 @@ from ulna.study.study import Study
 
 RANGES = 24
 """Equal ranges of an abscissa in which means are taken."""
+TURN_RAD = 2.0 * np.pi
 FEWEST = 3
 """Readings in a range that give a mean with an uncertainty."""
 ARROW = 0.08
@@ -130,7 +131,7 @@ def clouds(study: Study, arm: Arm, residuals: pl.DataFrame) -> tuple[list[Cloud]
     found: list[Cloud] = []
     pointed = [part for part in parts if part.along_joint_mm is not None]
     for joint in range(arm.n if pointed else 0):
-        x = np.degrees(np.concatenate([part.q_rad[:, joint] for part in pointed]))
+        x = np.degrees(folded_rad(np.concatenate([part.q_rad[:, joint] for part in pointed])))
         y = np.concatenate([part.along_joint_mm[:, joint] for part in pointed if part.along_joint_mm is not None])
         found.append(_cloud("joint", joint + 1, x, y, np.concatenate([part.reading for part in pointed])))
     reach = np.linalg.norm(np.concatenate([part.tip_mm for part in parts]), axis=1)
@@ -138,6 +139,25 @@ def clouds(study: Study, arm: Arm, residuals: pl.DataFrame) -> tuple[list[Cloud]
     found.append(_cloud("reach", 0, reach, size, np.concatenate([part.reading for part in parts])))
     found += _over_temperature(parts)
     return found, _quiver(parts)
+
+
+def folded_rad(angle_rad: F64) -> F64:
+    """(N,) encoder angles as they are, where they are within one turn; else folded into the turn that begins in the
+    middle of the widest gap.
+
+    What depends on a joint's angle comes again after a turn, so that a joint that turned several times is one turn
+    wide; and a cloud that lies about the encoder's zero, or is a turn off, is not torn apart.
+    """
+    if not len(angle_rad) or float(np.ptp(angle_rad)) <= TURN_RAD:
+        return angle_rad
+    turned = np.sort(angle_rad % TURN_RAD)
+    gaps = np.diff(np.append(turned, turned[0] + TURN_RAD))
+    widest = int(np.argmax(gaps))
+    begin = (turned[widest] + 0.5 * gaps[widest]) % TURN_RAD
+    # as near to zero as a turn can be
+    begin -= TURN_RAD if begin >= np.pi else 0.0
+    found: F64 = begin + (angle_rad - begin) % TURN_RAD
+    return found
 
 
 def _over_temperature(parts: list[_Poses]) -> list[Cloud]:

@@ -10,7 +10,7 @@ from ulna.documents.content.parameters import Observability, Parameters
 from ulna.documents.content.readings import Lengths
 from ulna.documents.content.thinning import shown
 from ulna.documents.html.markup import label, labels
-from ulna.documents.html.plots import INK, MAIN, SECOND, Plot, axis, layout, numbers, points
+from ulna.documents.html.plots import INK, MAIN, OUTLIER, Plot, axis, layout, numbers, points
 from ulna.documents.languages.text import named
 from ulna.documents.languages.words import Words
 
@@ -58,7 +58,7 @@ def singular_plot(name: str, found: Observability, words: Words) -> Plot:
     data = [points(say("legend.determined"), number[kept], values[kept], MAIN, size=8)]
     lost = ~kept & (values > 0.0)
     if lost.any():
-        data.append(points(say("legend.lost"), number[lost], values[lost], SECOND, "diamond-open", 9))
+        data.append(points(say("legend.lost"), number[lost], values[lost], OUTLIER, "diamond-open", 9))
     seen = values[values > 0.0]
     decades = math.log10(float(seen[0] / seen[-1]))
     # ticks within decades where there are few of them, else some of the decades

@@ -2,12 +2,12 @@
 "use strict";
 (function () {
   var light = {
-    main: "#0072b2", faint: "#a9cfe6", outlier: "#d55e00", second: "#009e73", ink: "#1b1f24", grid: "#e3e7ec", axis: "#8a939e",
-    paper: "#ffffff", band: "rgba(230,159,0,0.28)"
+    main: "#0072b2", faint: "#a9cfe6", outlier: "#d55e00", second: "#009e73", undecided: "#9a6700", ink: "#1b1f24", grid: "#e3e7ec", axis: "#8a939e",
+    paper: "#ffffff", band: "rgba(154,103,0,0.22)"
   };
   var dark = {
-    main: "#56b4e9", faint: "#2b5875", outlier: "#ee7733", second: "#2fc39a", ink: "#e7eaee", grid: "#2e353d", axis: "#77818d",
-    paper: "#14171b", band: "rgba(230,159,0,0.30)"
+    main: "#56b4e9", faint: "#2b5875", outlier: "#ee7733", second: "#2fc39a", undecided: "#f0b429", ink: "#e7eaee", grid: "#2e353d", axis: "#77818d",
+    paper: "#14171b", band: "rgba(240,180,41,0.25)"
   };
   var NARROW = 480;
   var root = document.documentElement;

@@ -19,7 +19,7 @@ from ulna.documents.languages.text import Text
 DIGITS = 6
 """Of numbers in plots: more than a screen can show."""
 
-MAIN, OUTLIER, INK, SECOND, GRID = "@main", "@outlier", "@ink", "@second", "@grid"
+MAIN, OUTLIER, INK, GOOD, UNDECIDED, GRID = "@main", "@outlier", "@ink", "@second", "@undecided", "@grid"
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from ulna.documents.content.clouds import Quiver
 from ulna.documents.content.readings import ReadingRows
 from ulna.documents.content.thinning import runs, shown
 from ulna.documents.html.markup import label, labels
-from ulna.documents.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, numbers, points
+from ulna.documents.html.plots import INK, MAIN, OUTLIER, Plot, axis, layout, numbers, points
 from ulna.documents.html.residual_plots import where
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
@@ -82,7 +82,7 @@ def space_plot(name: str, quiver: Quiver, readings: ReadingRows, words: Words) -
             "x": [0],
             "y": [0],
             "z": [0],
-            "marker": {"symbol": "square", "size": 6, "color": SECOND},
+            "marker": {"symbol": "square", "size": 6, "color": INK},
         }
     )
     axes = {

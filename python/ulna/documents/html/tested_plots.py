@@ -8,11 +8,16 @@ import numpy as np
 
 from ulna.documents.content.acceptance import TestedLengths, limit_lines
 from ulna.documents.html.markup import labels
-from ulna.documents.html.plots import INK, MAIN, OUTLIER, SECOND, Plot, axis, layout, line, points
+from ulna.documents.html.plots import GOOD, INK, OUTLIER, UNDECIDED, Plot, axis, layout, line, points
 from ulna.documents.languages.words import Words
 
 #: verdict → colour and shape of its marks
-MARKS = {"pass": (MAIN, "circle"), "undecided": (SECOND, "diamond"), "fail": (OUTLIER, "x"), None: (INK, "circle-open")}
+MARKS = {
+    "pass": (GOOD, "circle"),
+    "undecided": (UNDECIDED, "diamond"),
+    "fail": (OUTLIER, "x"),
+    None: (INK, "circle-open"),
+}
 
 
 def tested_lengths_plot(name: str, found: TestedLengths, words: Words) -> Plot:

@@ -20,7 +20,7 @@ from ulna.documents.laboratory.tables import (
     PersonTable,
     TemperatureCondition,
 )
-from ulna.formats.models import fill
+from ulna.formats.models import fill_or_list, listed
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError
 
@@ -59,33 +59,38 @@ class Laboratory:
 
 
 def load_laboratory(path: str | Path) -> Laboratory:
-    """Read a laboratory file. Raises UlnaInputError."""
+    """Read a laboratory file. Raises UlnaInputError with all that is wrong with it: who fills it in corrects it once.
+
+    What keys say together (days in order, one signer, texts in all languages) is asked where each of them can be read.
+    """
     path = Path(path)
     document, sha256 = read_toml(path, WHAT)
     check_format(document, path, "ulna-lab")
-    file = fill(LaboratoryFile, document, path)
+    file, problems = fill_or_list(LaboratoryFile, document)
+    if file is None:
+        raise listed(path, problems)
     laboratory = Laboratory(path, sha256, file)
-    _check_languages(file, path)
-    _check_days(file.certificate, path)
-    _check_signer(file.person, path)
-    _check_condition(file.environment.temperature, path, "temperature")
+    problems += [*_languages(file), *_days(file.certificate), *_signer(file.person)]
+    problems += _condition(file.environment.temperature, "temperature")
     if file.environment.humidity is not None:
-        _check_condition(file.environment.humidity, path, "humidity")
+        problems += _condition(file.environment.humidity, "humidity")
     if laboratory.logo is not None and not laboratory.logo.is_file():
-        raise UlnaInputError(
-            f"{path}: key 'laboratory.logo': {laboratory.logo} is not there; expected a picture. Correct or remove it."
+        problems.append(
+            f"key 'laboratory.logo': {laboratory.logo} is not there; expected a picture. Correct or remove it."
         )
+    if problems:
+        raise listed(path, problems)
     return laboratory
 
 
-def _check_languages(file: LaboratoryFile, path: Path) -> None:
+def _languages(file: LaboratoryFile) -> Iterator[str]:
     known = file.languages
     if len(set(known)) != len(known):
-        raise UlnaInputError(f"{path}: key 'languages': a language stands twice; expected each once. Remove one.")
+        yield ("key 'languages': a language stands twice; expected each once. Remove one.")
     for key, text in _tables_of_texts(file, ""):
         if set(text) != set(known):
-            raise UlnaInputError(
-                f"{path}: key '{key}': has the languages {', '.join(text)}, expected {', '.join(known)}, as the key "
+            yield (
+                f"key '{key}': has the languages {', '.join(text)}, expected {', '.join(known)}, as the key "
                 "'languages' says. Add or remove languages."
             )
 
@@ -101,7 +106,7 @@ def _tables_of_texts(value: object, key: str) -> Iterator[tuple[str, dict[str, s
         yield key, value
 
 
-def _check_days(certificate: CertificateTable, path: Path) -> None:
+def _days(certificate: CertificateTable) -> Iterator[str]:
     days = [
         ("received", certificate.received),
         ("begin", certificate.begin),
@@ -111,30 +116,28 @@ def _check_days(certificate: CertificateTable, path: Path) -> None:
     there = [(key, day) for key, day in days if day is not None]
     for (earlier, first), (later, second) in pairwise(there):
         if second < first:
-            raise UlnaInputError(
-                f"{path}: key 'certificate.{later}': got {second}, before '{earlier}' ({first}); expected the days in "
+            yield (
+                f"key 'certificate.{later}': got {second}, before '{earlier}' ({first}); expected the days in "
                 "order: received, begin, end, issued. Correct one of them."
             )
 
 
-def _check_signer(persons: list[PersonTable], path: Path) -> None:
+def _signer(persons: list[PersonTable]) -> Iterator[str]:
     count = sum(person.main_signer for person in persons)
     if count != 1:
-        raise UlnaInputError(
-            f"{path}: key 'person': {count} persons have main_signer = true, expected exactly one. Correct it."
-        )
+        yield (f"key 'person': {count} persons have main_signer = true, expected exactly one. Correct it.")
 
 
-def _check_condition(condition: TemperatureCondition | HumidityCondition, path: Path, name: str) -> None:
+def _condition(condition: TemperatureCondition | HumidityCondition, name: str) -> Iterator[str]:
     """Either value and u, or low and high."""
     given = {key for key in ("value", "u", "low", "high") if getattr(condition, key) is not None}
     if given not in ({"value", "u"}, {"low", "high"}):
-        raise UlnaInputError(
-            f"{path}: key 'environment.{name}': has {', '.join(sorted(given)) or 'no number'}, expected value and u "
+        yield (
+            f"key 'environment.{name}': has {', '.join(sorted(given)) or 'no number'}, expected value and u "
             "(its standard uncertainty), or low and high. Correct it."
         )
     if condition.low is not None and condition.high is not None and condition.high < condition.low:
-        raise UlnaInputError(
-            f"{path}: key 'environment.{name}': low is {condition.low:g} and high {condition.high:g}; expected low "
+        yield (
+            f"key 'environment.{name}': low is {condition.low:g} and high {condition.high:g}; expected low "
             "not above high. Exchange them."
         )

@@ -14,10 +14,12 @@ from ulna.documents.drawn import parameters as drawn
 from ulna.documents.languages.text import Text
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf.canvas import WIDTH_MM, axes_of, labels, svg_of
-from ulna.ground.style import BLUE, GREEN, GREY, VERMILION
+from ulna.ground.style import OF_VERDICT, ORANGE
 
 #: verdict → shape and colour of its marks
-VERDICTS = {"pass": ("o", BLUE), "undecided": ("D", GREEN), "fail": ("X", VERMILION), None: ("o", GREY)}
+VERDICTS = {
+    each: (mark, OF_VERDICT[each]) for each, mark in (("pass", "o"), ("undecided", "D"), ("fail", "X"), (None, "o"))
+}
 
 
 def before_after(rows: Sequence[QualityRow], words: Words) -> str:
@@ -54,7 +56,7 @@ def tested_lengths(found: TestedLengths, words: Words) -> str:
             if guard.any():
                 label = say("legend.guard") if first else None
                 band = (side * (limit - guard), side * (limit + guard))
-                axes.fill_between(x, *band, color=GREY, alpha=0.22, linewidth=0, label=label)
+                axes.fill_between(x, *band, color=ORANGE, alpha=0.22, linewidth=0, label=label)
             axes.plot(x, side * limit, "--", color="black", linewidth=1.0, label=say("legend.mpe") if first else None)
         axes.set_xlim(x[0], x[-1])
     for verdict, (marker, colour) in VERDICTS.items():

@@ -42,7 +42,7 @@ def certificate(content: Content, language: str, fonts: Path | None = None) -> t
     parts = order.parts(content, words)
     # labels of plots are words of the dictionary: all of them, so that fonts are known before they are drawn
     own = [text for key, text in dictionary(language).items() if not key.startswith(_ELSEWHERE)]
-    chosen = choose([*_texts(data), *_texts(parts), *own], fonts)
+    chosen = choose([*texts_in(data), *texts_in(parts), *own], fonts)
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     to = Setting(content, words)
@@ -76,7 +76,7 @@ def _about(content: Content, words: Words) -> dict[str, Any]:
             "number": say("laboratory.identifier") if signed else say("provenance.result"),
             "draft": say("paper.draft"),
             "sign": say("paper.sign"),
-            "page": _page_label(words),
+            "page": page_label(words),
         },
     }
 
@@ -86,7 +86,7 @@ def _set(part: order.Part, to: Setting) -> list[blocks.Block]:
     return [*heading, *to.all(part.blocks)]
 
 
-def _page_label(words: Words) -> list[str]:
+def page_label(words: Words) -> list[str]:
     """The text before, between and after the two numbers, which the template puts in."""
     found: list[str] = [""]
     for piece in words("paper.page", page=_NUMBER, pages=_NUMBER):
@@ -97,16 +97,16 @@ def _page_label(words: Words) -> list[str]:
     return found
 
 
-def _texts(value: Any) -> Iterator[str]:
+def texts_in(value: Any) -> Iterator[str]:
     """All strings within, as they are shown; of plots what is said of them, not what is drawn."""
     if isinstance(value, str):
         yield clean(value)
     elif isinstance(value, dict):
-        yield from _texts(list(value.values()))
+        yield from texts_in(list(value.values()))
     elif isinstance(value, Drawing):
-        yield from _texts([value.caption, value.heading])
+        yield from texts_in([value.caption, value.heading])
     elif dataclasses.is_dataclass(value):
-        yield from _texts([getattr(value, field.name) for field in dataclasses.fields(value)])
+        yield from texts_in([getattr(value, field.name) for field in dataclasses.fields(value)])
     elif isinstance(value, Sequence):
         for each in value:
-            yield from _texts(each)
+            yield from texts_in(each)

@@ -34,6 +34,7 @@ def pictures(data: Mapping[str, Any], fonts: Chosen, ppi: float) -> list[bytes]:
 def _compiled(data: Mapping[str, Any], fonts: Chosen, kind: Literal["pdf", "png"], ppi: float = 144.0) -> list[bytes]:
     import typst
 
+    standards: Any = _standards(data) if kind == "pdf" else []
     template = (resources.files("ulna.documents.pdf") / "certificate.typ").read_bytes()
     inputs = {"data": json.dumps(data, ensure_ascii=False, allow_nan=False)}
     with tempfile.TemporaryDirectory(prefix="ulna-fonts-") as folder:
@@ -46,7 +47,7 @@ def _compiled(data: Mapping[str, Any], fonts: Chosen, kind: Literal["pdf", "png"
             compiled, warnings = compiler.compile_with_warnings(
                 format=kind,
                 ppi=ppi,
-                pdf_standards=list(STANDARDS) if kind == "pdf" else [],
+                pdf_standards=standards,
                 timestamp=_stamp(data),
             )
         except typst.TypstError as error:
@@ -57,6 +58,11 @@ def _compiled(data: Mapping[str, Any], fonts: Chosen, kind: Literal["pdf", "png"
     if compiled is None:
         raise RuntimeError("Typst gave nothing")  # a mistake of ours
     return [compiled] if isinstance(compiled, bytes) else compiled
+
+
+def _standards(data: Mapping[str, Any]) -> list[Literal["a-2a", "ua-1"]]:
+    """A sheet to be filled in by hand has no date, and what has none is not for archives."""
+    return list(STANDARDS) if data.get("archived", True) else ["ua-1"]
 
 
 def _stamp(data: Mapping[str, Any]) -> int:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from ulna.documents.content.acceptance import Whole, wholes
 from ulna.documents.content.content import Content
-from ulna.documents.languages.text import Text
+from ulna.documents.languages.text import Style, Text
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Tone, own
 
 #: verdict → how it is shown
+STYLES: dict[str | None, Style] = {"pass": "pass", "fail": "fail", "undecided": "undecided", None: "none"}
 TONES: dict[str | None, Tone] = {"pass": "good", "fail": "bad", "undecided": "missing", None: "missing"}
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+from ulna.documents.content.acceptance import wholes
 from ulna.documents.content.content import Content
-from ulna.documents.languages.text import Text, named
+from ulna.documents.languages.text import Text, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Listed, Paragraph, Tile, Tiles, own
+from ulna.documents.sections.decision import STYLES, verdict
 from ulna.ground.digits import figure_mm
 
 
@@ -46,6 +48,12 @@ def counts(content: Content, words: Words) -> list[Block]:
     for joints in fit.undecided_signs:
         key = "summary.mirror" if joints in fit.mirrored_signs else "summary.signs"
         said.append(words(key, joints=own(", ".join(map(str, joints)))))
+    if content.verification is not None:
+        name = content.verification.file.profile.name
+        for whole in wholes(content.verification.file):
+            outcome = styled(verdict(whole.verdict, words), STYLES[whole.verdict])
+            state = words(f"state.{whole.state}")
+            said.append(words("summary.verification", profile=name, state=state, verdict=outcome))
     if fit.common_factor is not None:
         said.append(words("summary.common-factor", factor=own(f"{fit.common_factor:.4g}")))
     return [Listed(said)]

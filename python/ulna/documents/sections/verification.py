@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ulna.documents.content.acceptance import Verification
-from ulna.documents.languages.text import NONE, Style, Text, joined, named, styled
+from ulna.documents.languages.text import NONE, Text, joined, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table
-from ulna.documents.sections.decision import verdict
+from ulna.documents.sections.decision import STYLES, verdict
 from ulna.ground.digits import figure_mm, rounded, uncertainty
 from ulna.verification.result_file import FigureTable, StateTable, TestedTable, ValueTable
 
 COLUMNS = ("condition", "figure", "verdict", "value-mm", "u-mm", "expanded-mm", "limit-mm", "guard-mm", "values")
 SINGLES = ("condition", "figure", "where", "verdict", "calibrated-mm", "value-mm", "limit-mm", "u-mm")
-STYLES: dict[str | None, Style] = {"pass": "pass", "fail": "fail", "undecided": "undecided", None: "none"}
 
 
 def verification(found: Verification, words: Words) -> list[Block]:

@@ -45,8 +45,8 @@ class Wanted(ABC):
     name: str
 
     @abstractmethod
-    def keys(self) -> list[Key]:
-        """Of its table in a verify file; [] where there is no such table."""
+    def keys(self, range_mm: float | None = None) -> list[Key]:
+        """Of its table in a verify file, with examples for a measuring range; [] where there is no such table."""
 
     @abstractmethod
     def stated(self, range_mm: float) -> dict[str, Any]:
@@ -71,7 +71,7 @@ class WantedBall(Wanted):
 
     name: str = "ball"
 
-    def keys(self) -> list[Key]:
+    def keys(self, range_mm: float | None = None) -> list[Key]:
         return [
             Key("kind", "ball"),
             Key("diameter", None, "25.0000        # from its certificate"),
@@ -111,12 +111,11 @@ class WantedLength(Wanted):
         """Whether it ends in faces."""
         return self.ends == "opposite-faces"
 
-    def keys(self) -> list[Key]:
+    def keys(self, range_mm: float | None = None) -> list[Key]:
+        length = 1000.0 if range_mm is None else self.stated(range_mm)["length"]
         return [
             Key("kind", "length"),
-            Key(
-                "length", None, f"1000.0           # from its certificate; about {100 * self.share:.0f} % of the range"
-            ),
+            Key("length", None, f"{length:<17}# from its certificate; about {100 * self.share:.0f} % of the range"),
             Key("u", None, "0.0010                # standard uncertainty: U / k"),
             Key("ends", self.ends),
             Key("expansion", None, "11.5e-6       # 1/K"),
@@ -165,7 +164,7 @@ class WantedSeat(Wanted):
     places: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Position → least and most share of the reach."""
 
-    def keys(self) -> list[Key]:
+    def keys(self, range_mm: float | None = None) -> list[Key]:
         return []
 
     def stated(self, range_mm: float) -> dict[str, Any]:

@@ -1,0 +1,119 @@
+"""A plan file for an arm, filled in as far as the arm and a study say it: nothing is typed twice."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.artefacts.artefact import Artefact
+from ulna.artefacts.kinds import kind_of
+from ulna.formats.toml_text import toml_key, toml_value
+from ulna.ground.errors import UlnaInputError
+from ulna.simulation.study_files import artefact_table, features_file
+from ulna.study.study import Study
+
+STANDS = 12
+"""Places that a person is glad to put a bar in; a plan of so many is about as good as one of any number."""
+ABOUT_BAR = 0.4
+"""Of the arm's reach: a bar as long is easily put anywhere."""
+ENCODER, SEAT = "5e-6", "0.01"
+
+
+def plan_toml(arm: Arm, study: Study | None, folder: Path) -> str:
+    """The text of a plan file in a folder; what is not known stands behind '#' or is marked as an example. Raises
+    UlnaInputError for a study that does not fit."""
+    probe = next(iter(arm.probes))
+    reach_mm = float(arm.core.reach_mm(0))
+    lines = [
+        f"# A plan for arm {toml_value(arm.name)}, {arm.n} joints, reach {reach_mm:.0f} mm:",
+        "# ulna plan ARM THIS -o planned",
+        'format = "ulna-plan/1"',
+        'units = { length = "mm", angle = "rad" }',
+        *_artefact(arm, study, reach_mm, folder),
+        *_noise(arm, study),
+        *_travel(arm),
+        "",
+        "[within] # where a person can put it, mm: heights above the table at z = table, nothing nearer to the axis",
+        "table = 0.0",
+        "low = 0.0",
+        "high = 1000.0",
+        "aside = 150.0",
+        "",
+        "[plan]",
+        "choose = 100 # measurements",
+        f"placements = {STANDS} # places of the artefact, at the most",
+    ]
+    if len(arm.probes) > 1:
+        lines.append(f"probe = {toml_value(probe)} # or {', '.join(list(arm.probes)[1:])}")
+    hold = [] if study is None else list(study.fit.hold)
+    lines.append(f"hold = {toml_value(hold)}" if hold else '# hold = ["joint.1.*"] # parameters that are not fitted')
+    return "\n".join(lines) + "\n"
+
+
+def _artefact(arm: Arm, study: Study | None, reach_mm: float, folder: Path) -> list[str]:
+    if study is None:
+        length = max(round(ABOUT_BAR * reach_mm, -1), 10.0)
+        return [
+            "",
+            "[artefact.bar]",
+            'kind = "bar"',
+            f"length = {length} # an example, {100 * ABOUT_BAR:.0f} % of the reach: yours, as certified",
+        ]
+    if study.arm.n != arm.n:
+        raise UlnaInputError(
+            f"option --study: {study.label} is of an arm with {study.arm.n} joints, ARM has {arm.n}; expected as many. "
+            "Name another."
+        )
+    artefacts = {group.artefact.name: group.artefact for group in study.readings}
+    planned = [each for each in artefacts.values() if each.kind != "length"]
+    if not planned:
+        raise UlnaInputError(
+            f"option --study: {study.label} has no artefact that a plan can put somewhere; expected a bar, a seat, "
+            "points or a surface. Leave the option out."
+        )
+    artefact = planned[0]
+    table = {"kind": artefact.kind, **artefact_table(artefact)}
+    table.pop("fit", None)
+    others = [f"# others of that study: {', '.join(each.name for each in planned[1:])}"] if planned[1:] else []
+    head = f"[artefact.{toml_key(artefact.name)}]"
+    return ["", *others, head, *(f"{key} = {value}" for key, value in _told(artefact, table, study, folder))]
+
+
+def _told(artefact: Artefact, table: dict[str, Any], study: Study, folder: Path) -> list[tuple[str, str]]:
+    """Keys as TOML; features stand in the file itself, so that no other is needed."""
+    if kind_of(artefact).features_file:
+        named = ", ".join(f"{toml_key(name)} = {toml_value(list(xyz))}" for name, xyz in artefact.features.items())
+        return [(key, f"{{ {named} }}" if value == features_file(artefact) else toml_value(value))
+                for key, value in table.items()]  # fmt: skip
+    return [(key, toml_value(value)) for key, value in table.items()]
+
+
+def _noise(arm: Arm, study: Study | None) -> list[str]:
+    noise = None if study is None else study.noise
+    counts = [joint.counts_per_turn for joint in arm.joints]
+    if noise is not None and noise.encoder_rad is not None:
+        encoder = toml_value(noise.encoder_rad.tolist()) + " # as the study has it"
+    elif all(counts):
+        # a count is rounded: uniform over its width
+        steps = [float(f"{2.0 * np.pi / float(count or 1.0) / np.sqrt(12.0):.3g}") for count in counts]
+        encoder = toml_value(steps) + " # one count of each encoder, over the root of 12; more where they are noisy"
+    else:
+        encoder = f"{ENCODER} # rad, an example: standard deviation of an encoder reading"
+    seat = None if noise is None else noise.seat_mm
+    touch = f"seat = {SEAT} # mm, an example" if seat is None else f"seat = {toml_value(seat)} # as the study has it"
+    return ["", "[noise]", f"encoder = {encoder}", touch]
+
+
+def _travel(arm: Arm) -> list[str]:
+    """Nothing where the arm file has all limits; else a pair for each joint, those that are not known as examples."""
+    if all(joint.travel_rad is not None for joint in arm.joints):
+        return ["", "# how far joints turn: the arm file says it"]
+    lines = ["", "[travel] # rad; turns that the arm file does not state are examples", "limits = ["]
+    for k, joint in enumerate(arm.joints, start=1):
+        low, high = joint.travel_rad or (-3.14, 3.14)
+        mark = "" if joint.travel_rad is not None else ": an example"
+        lines.append(f"    {toml_value([float(low), float(high)])}, # joint {k}{mark}")
+    return [*lines, "]"]
