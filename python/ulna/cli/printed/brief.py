@@ -3,8 +3,9 @@ not, and the verdict once more at the end, where the eye is."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import StringIO
+from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.table import Table
@@ -22,7 +23,6 @@ from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.hints import what_to_try
 from ulna.cli.printed.identification import cause_in_words, determined_in_words
-from ulna.cli.printed.outliers import one_far_off
 from ulna.cli.printed.scale import common_factor
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import figure_mm, uncertainty
@@ -57,7 +57,7 @@ def _well(result: Result, width: int) -> list[RenderableType]:
         far_off=len(result.outliers),
     )
     before += ["", figures, ""]
-    after = [*_open(result), *judged_extras(result.extras), *_far_off(result), "", _verdict(result)]
+    after = [*_open(result, width), *judged_extras(result.extras), *_far_off(result, width), "", _verdict(result)]
     room = MOST_LINES - _WRITTEN - sum(_lines(part, width) for part in [*before, *after])
     return [*before, *_parameters(result.parameters, width, room), *after]
 
@@ -91,7 +91,7 @@ def _parameters(rows: Sequence[Parameter], width: int, room: int) -> list[Render
     return [*parts, Text(f"… and {left} more: --all shows them.")] if left else parts
 
 
-def _open(result: Result) -> list[RenderableType]:
+def _open(result: Result, width: int) -> list[RenderableType]:
     """What was lost and what is weak, a line each."""
     found = result.identifiability
     parts: list[RenderableType] = []
@@ -99,20 +99,20 @@ def _open(result: Result) -> list[RenderableType]:
         parts += ["", Text(f"{determined_in_words(found).capitalize()} Why, and what helps: --all.")]
         for direction in found.lost[:_FEW]:
             cause = cause_in_words(str(direction.get("cause", "")))
-            parts.append(_cut(f" {combination(direction['combination'])}{f'   ({cause})' if cause else ''}"))
+            parts.append(_cut(f" {combination(direction['combination'])}{f'   ({cause})' if cause else ''}", width))
         if len(found.lost) > _FEW:
             parts.append(Text(f" … and {len(found.lost) - _FEW} more"))
     if found.weak:
         parts += ["", Text("Known worse than from a drawing:")]
         for direction in found.weak[:_FEW]:
             u = f"u = {uncertainty(direction['u'])} {direction['unit']}"
-            parts.append(_cut(f" {combination(direction['combination'])}   ({u})"))
+            parts.append(_cut(f" {combination(direction['combination'])}   ({u})", width))
         if len(found.weak) > _FEW:
             parts.append(Text(f" … and {len(found.weak) - _FEW} more"))
     return parts
 
 
-def _far_off(result: Result) -> list[RenderableType]:
+def _far_off(result: Result, width: int) -> list[RenderableType]:
     if not result.outliers:
         return []
     more = len(result.outliers) - _FEW
@@ -120,9 +120,15 @@ def _far_off(result: Result) -> list[RenderableType]:
     parts: list[RenderableType] = [
         "",
         Text(f"Far off the rest: {len(result.outliers)} of {result.fit.readings} readings. {counted} Look at them:"),
-        *(_cut(f" {one_far_off(entry)}") for entry in result.outliers[:_FEW]),
+        *(_cut(f" {_off(entry)}", width) for entry in result.outliers[:_FEW]),
     ]
     return [*parts, Text(f" … and {more} more: --all, result.json")] if more > 0 else parts
+
+
+def _off(entry: Mapping[str, Any]) -> str:
+    place = f", {entry['place']}" if "place" in entry else ""
+    names = f"{entry['artefact']}, placement {entry['placement']}"
+    return f"{figure_mm(entry['norm_mm'])} mm: row {entry['row']} of {entry['file']}{place} ({names})"
 
 
 def _verdict(result: Result) -> Text:
@@ -157,8 +163,11 @@ def _badly(result: Result, suspected: Suspicion | None) -> list[RenderableType]:
     return parts
 
 
-def _cut(text: str) -> Text:
-    return Text(text, no_wrap=True, overflow="ellipsis")
+def _cut(text: str, width: int) -> Text:
+    """In one line."""
+    cut = Text(text)
+    cut.truncate(width, overflow="ellipsis")
+    return cut
 
 
 def _lines(part: RenderableType, width: int) -> int:

@@ -20,7 +20,7 @@ def far_off(outliers: Sequence[Mapping[str, Any]], fit: FitSummary) -> list[Rend
     if not outliers:
         return []
     parts: list[RenderableType] = ["", heading(f"Far off the rest: {len(outliers)} of {fit.readings} readings")]
-    parts.append(listed([one_far_off(entry)] for entry in outliers[:_MOST]))
+    parts.append(listed([_one(entry)] for entry in outliers[:_MOST]))
     more = f" The other {len(outliers) - _MOST} are in result.json and residuals.csv." if len(outliers) > _MOST else ""
     if fit.loss == "none":
         counted = 'They counted in full. Look at them; loss = "huber" in [fit] lets such readings count less.'
@@ -29,8 +29,7 @@ def far_off(outliers: Sequence[Mapping[str, Any]], fit: FitSummary) -> list[Rend
     return [*parts, Text(counted + more)]
 
 
-def one_far_off(entry: Mapping[str, Any]) -> str:
-    """Which reading, and how far off."""
+def _one(entry: Mapping[str, Any]) -> str:
     names = [entry["artefact"], f"placement {entry['placement']}"]
     names += [entry["feature"]] if "feature" in entry else []
     counted = "" if "counted" not in entry else f", counted {entry['counted']:.2g}"
