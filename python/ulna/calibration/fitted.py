@@ -111,9 +111,14 @@ class FittedStudy:
             readings=sum(len(group) for group in study.readings),
             method=study.fit.method,
             loss=study.fit.loss,
+            signs_found=self._signs_found(),
             box_evaluations=0 if self.searched is None else self.searched.evaluations,
             scatter={group.artefact.name: scale for group, scale in zip(study.readings, self.core.scales, strict=True)},
         )
+
+    def _signs_found(self) -> dict[str, int]:
+        found = zip(self.study.arm.unknown_signs.tolist(), self.core.arm.signs.tolist(), strict=True)
+        return {f"joint.{k}.sign": int(sign) for k, (unknown, sign) in enumerate(found, 1) if unknown}
 
     @cached_property
     def _covariance(self) -> ParameterCovariance:

@@ -42,7 +42,7 @@ def calibration_report(result: Result) -> list[RenderableType]:
     title, without = "Before and after, on the fitted readings", result.without_far_off
     table = before_after(title, result.before, result.after, [rms], without, len(result.outliers))
     parts += ["", table]
-    parts += ["", *parameter_tables(result.parameters)]
+    parts += ["", *parameter_tables(result.parameters), *signs_found(result.fit)]
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
@@ -125,6 +125,14 @@ def parameter_tables(parameters: Sequence[Parameter], with_start: bool = True) -
     if beyond:
         tables += ["", _parameter_table("Beyond the arm's geometry", beyond, False)]
     return tables
+
+
+def signs_found(fit: FitSummary) -> list[RenderableType]:
+    """Of joints whose sign nobody knew: one line below the parameters."""
+    if not fit.signs_found:
+        return []
+    said = ", ".join(f"{name} = {sign}" for name, sign in fit.signs_found.items())
+    return [Text(f"Signs found: {said}.")]
 
 
 def _parameter_table(
