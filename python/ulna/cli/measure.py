@@ -94,6 +94,7 @@ def measure(
     from ulna.cli import output
     from ulna.cli.endings import by_ending
     from ulna.formats.layout import Layout
+    from ulna.formats.output import refuse_inputs
     from ulna.measuring.measure import measure as measure_to_file
     from ulna.measuring.measure import measure_to_stream
 
@@ -103,6 +104,7 @@ def measure(
     table |= {"fill_down": tuple(fill_down or ()), "header": (header or True) if not no_header else False}
     layout = Layout.of_options(column, name, dataset=dataset, **table)
     if out is not None:
+        refuse_inputs([out], [arm, readings])
         by_ending(out, {".csv": "csv", ".txt": "csv", ".parquet": "parquet", "": "csv"}, [], folder=False)
     if out is None:
         choices["layout"] = layout
