@@ -65,7 +65,7 @@ def test_make_lab_writes_a_file_to_fill_in(tmp_path: Path) -> None:
     assert_bad_input(run("certificate", "--make-lab", "-o", out, "--force"), "--make-lab", "--force")
     assert out.read_bytes() == before
     unfilled = run("certificate", RESULT, out, "--dcc", "-o", tmp_path / "c.xml")
-    assert_bad_input(unfilled, f"{out}: key 'certificate.identifier'", "fill it in")
+    assert_bad_input(unfilled, f"{out}: ", "problems:\n- ", "- key 'certificate.identifier'", "fill it in")
     assert not (tmp_path / "c.xml").exists()
 
 
