@@ -4,13 +4,15 @@
 VENV := .venv
 BIN := $(VENV)/bin
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
+# Says what takes long before it begins, and how long it took: tools/step.sh "what" "command".
+STEP := tools/step.sh
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # mkdocs-material announces its plans for another major version of mkdocs; ours is pinned by the lock.
 export NO_MKDOCS_2_WARNING := 1
 
 .PHONY: help
 help: ## list these targets
-	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | awk -F'\t' '{printf "make %-10s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z][a-z-]*:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | awk -F'\t' '{printf "make %-12s %s\n", $$1, $$2}'
 
 # ---------------------------------------------------------------- build
 
@@ -19,26 +21,35 @@ build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bi
 
 # Every package comes from the lock file and must have the hash written there.
 $(VENV)/.locked: requirements-dev.lock
-	@echo "Installing the locked Python packages into $(VENV)/ …"
-	@python=$$(tools/prerequisites.sh build) && $$python -m venv --clear $(VENV)
-	@$(BIN)/python -m pip install --quiet --require-hashes --requirement requirements-dev.lock
+	@python=$$(tools/prerequisites.sh build) && $(STEP) "Making $(VENV)/ with $$(grep -c == $<) locked Python packages (one to five minutes)" \
+		"$$python -m venv --clear $(VENV) && $(BIN)/python -m pip install --quiet --require-hashes --requirement $<"
 	@touch $@
 
 # Python sources are used where they stand (an editable install), so only Rust changes need a rebuild.
 $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 	@tools/prerequisites.sh build >/dev/null
-	@echo "Compiling the core in release mode (the first time takes a minute or two) …"
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@$(STEP) "Compiling the core in release mode (two to five minutes the first time, then what changed)" \
+		'PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .'
 	@touch $@
 
 .PHONY: demo
 demo: build ## calibrate the shipped example, the virtual Platinum with its bent probe; result in out/demo
+	@echo "Calibrating the example (a second or two):"
 	$(BIN)/ulna calibrate examples/platinum/study.toml -o out/demo --force
+
+WHEELS := target/wheels
+
+.PHONY: wheel
+wheel: build ## build the wheel, examples and all, into target/wheels/
+	@rm -f $(WHEELS)/ulna-*.whl
+	@$(STEP) "Building the wheel (seconds, as the core is compiled)" \
+		"$(BIN)/maturin build --quiet --release --locked --interpreter $(BIN)/python --out $(WHEELS)"
+	@ls $(WHEELS)/ulna-*.whl
 
 # ---------------------------------------------------------------- test
 
 .PHONY: test
-test: prerequisites lint types rust-test python-test docs ## the whole suite: Rust, Python, lint, types, docs
+test: prerequisites lint types rust-test python-test wheel-test docs ## the whole suite: Rust, Python, lint, types, wheel, docs
 
 .PHONY: prerequisites
 prerequisites:
@@ -70,6 +81,10 @@ rust-test: build ## tests of the core, and its documentation with warnings as er
 python-test: build ## tests through the public door
 	$(BIN)/python -m pytest -n 2
 
+.PHONY: wheel-test
+wheel-test: wheel ## install the wheel into a fresh environment and run `ulna demo` there (a minute or two)
+	ULNA_WHEEL="$$(ls $(WHEELS)/ulna-*.whl)" $(BIN)/python -m pytest -p no:xdist tests/wheel
+
 .PHONY: docs
 docs: build ## build the documentation into site/, strict
 	$(BIN)/mkdocs build --strict --quiet
@@ -99,10 +114,10 @@ schemas: build ## write the JSON Schemas of all formats anew, from the models th
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
 	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }
 	UV_CUSTOM_COMPILE_COMMAND="make lock" uv pip compile --quiet --upgrade --universal --python-version 3.11 \
-		--generate-hashes --group dev pyproject.toml --output-file requirements-dev.lock
+		--generate-hashes --group dev --extra reports --extra tables --extra search pyproject.toml --output-file requirements-dev.lock
 
 .PHONY: clean
 clean: ## remove everything that was built
-	rm -rf $(VENV) target site out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) target site out python/ulna/examples .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find python tests examples benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 	find python -name '*.so' -delete

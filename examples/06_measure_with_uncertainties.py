@@ -14,20 +14,24 @@ import ulna
 
 HERE = Path(__file__).resolve().parent / "platinum"
 
-result = ulna.calibrate(ulna.Study.load(HERE / "study.toml"))
-measured = ulna.measure(result.arm, HERE / "check-bars.csv", encoder_u_rad=np.full(result.arm.n, 5e-6))
+result = ulna.calibrate(HERE / "study.toml")
+measured = ulna.measure(result, HERE / "check-bars.csv")
 assert measured.table is not None
 print("the first two touches, mm:")
 for row in measured.table.head(2).iter_rows(named=True):
     print("  " + "   ".join(f"{axis} = {row[axis]:8.3f} ± {row['u_' + axis]:.4f}" for axis in "xyz"))
 
-# The same in memory: arrays of encoder angles in rad give arrays of points in mm.
+# The same in memory: an array of encoder angles in rad gives points in mm that know how they err, also together.
 q_rad = np.zeros((3, result.arm.n))
 q_rad[:, 1] = [0.2, 0.4, 0.6]
-print("three poses:", np.round(result.arm.tip(q_rad), 2).tolist())
+points = ulna.measure(result, q_rad)
+print("three poses:", np.round(points.points_mm, 2).tolist())
+length = points.length(0, 2)
+assert length.u_mm is not None
+print(f"from the first to the last: {length.value_mm:.4f} mm, u = {length.u_mm:.4f} mm")
 
-# Results survive on disk: an arm loaded from a result.json carries its uncertainty.
+# Results survive on disk: every function takes the folder in place of the result.
 with tempfile.TemporaryDirectory() as folder:
-    result.save(folder)
-    again = ulna.Arm.load(Path(folder) / "result.json")
-print("uncertainty kept:", again.uncertainty is not None)
+    result.save(folder, force=True)
+    again = ulna.measure(folder, q_rad)
+print("the same from the folder:", bool((again.points_mm == points.points_mm).all() and again.length(0, 2) == length))

@@ -27,12 +27,13 @@ SKIPPED = 77
 TRUTH = "examples/platinum/truth.toml"
 #: file below docs/output → command, run in this order in one folder; lines: only the first ones are shown
 COMMANDS: dict[str, tuple[list[str], int | None]] = {
+    "demo.txt": (["demo"], None),
     "identify.txt": (["identify", "examples/platinum/study.toml"], None),
     "calibrate.txt": (["calibrate", "examples/platinum/study.toml", "-o", "out/demo"], None),
     "evaluate.txt": (["evaluate", "out/demo/result.json", "examples/platinum/check.toml"], None),
     "evaluate-before.txt": (["evaluate", "examples/platinum/platinum.toml", "examples/platinum/check.toml"], None),
     "cross-validate.txt": (["cross-validate", "examples/platinum/study.toml", "--by", "5"], None),
-    "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight"], None),
+    "seat.txt": (["calibrate", "examples/platinum/seat.toml", "-o", "out/straight", "--all"], None),
     "measure.txt": (["measure", "out/demo/result.json", "examples/platinum/check-bars.csv"], 5),
     "uncertainty.txt": (["uncertainty", "out/demo/result.json", "examples/platinum/length.toml"], None),
     "performance.txt": (

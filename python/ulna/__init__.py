@@ -11,13 +11,21 @@ each is.
 
 import lazy_loader
 
-from ulna.ground import renamed
+from ulna.ground import provided, renamed
 from ulna.ground.version import VERSION
 
 __getattr__, _, _names = lazy_loader.attach_stub(__name__, __file__)
 __all__ = [*_names, "__version__"]
 __version__ = VERSION
 renamed.install()
+provided.provide(
+    {
+        "arm of a URDF": "ulna.exchange.in_memory:arm_of_urdf",
+        "arm of a DH table": "ulna.exchange.in_memory:arm_of_dh",
+        "columns of a frame": "ulna.proposals.recognised:recognised",
+        "plots of a result": "ulna.documents.plotted:ResultPlots",
+    }
+)
 
 
 def __dir__() -> list[str]:

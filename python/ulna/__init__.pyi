@@ -14,6 +14,8 @@ from .calibration.identify import identify
 from .calibration.result import Result
 from .ground.errors import InputWarning, UlnaInputError
 from .measuring.measure import measure
+from .measuring.measured import Length, Measured
+from .measuring.measurement import Measurement
 from .planning.outcome import Plan
 from .planning.plan import plan
 from .planning.spec import PlanSpec
@@ -37,6 +39,9 @@ __all__ = [
     "FitOptions",
     "InputWarning",
     "Joint",
+    "Length",
+    "Measured",
+    "Measurement",
     "Noise",
     "Plan",
     "PlanSpec",

@@ -19,17 +19,20 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-@pytest.mark.parametrize("target", ["arm.toml", "q.csv", "other-name.csv"])
+@pytest.mark.parametrize("target", ["other-arm.csv", "q.csv", "other-name.csv"])
 def test_measure_keeps_the_arm_and_the_readings(tmp_path: Path, target: str) -> None:
     platinum().save(tmp_path / "arm.toml")
     (tmp_path / "q.csv").write_text("q1,q2,q3,q4,q5,q6,q7\n0,0,0,0,0,0,0\n")
     (tmp_path / "other-name.csv").symlink_to(tmp_path / "q.csv")
+    (tmp_path / "other-arm.csv").symlink_to(tmp_path / "arm.toml")
     before = contents(tmp_path)
     out = tmp_path / target
     done = run("measure", tmp_path / "arm.toml", tmp_path / "q.csv", "-o", out, "--force")
     assert_bad_input(done, f"error: {out}: is an input of this run", "Name another place")
     with pytest.raises(UlnaInputError, match="is an input"):
         ulna.measure(tmp_path / "arm.toml", tmp_path / "q.csv", out=out, force=True)
+    refused = run("measure", tmp_path / "arm.toml", tmp_path / "q.csv", "-o", tmp_path / "arm.toml", "--force")
+    assert_bad_input(refused, "arm.toml: got the ending '.toml', which points cannot be written to")
     assert contents(tmp_path) == before
 
 

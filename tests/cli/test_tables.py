@@ -88,7 +88,7 @@ def test_a_calibration_fits_the_terminal_with_every_row_whole(
         (line,) = [line for line in lines if line.startswith(row.name + " ") and row.status in line]
         assert len(line.split()) == 6
     assert any(
-        line.split() == ["joint.1.theta0", "-2.1689123", "-2.2689123", "3.1e-6", "rad", "fitted"] for line in lines
+        line.split() == ["joint.1.theta0", "-2.1689123", "-2.2689123", "0.0000031", "rad", "fitted"] for line in lines
     )
     assert any(line.split() == ["joint.1.a", "-1042.3754", "-1042.4754", "0.0031", "mm", "fitted"] for line in lines)
 

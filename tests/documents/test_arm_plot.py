@@ -15,6 +15,7 @@ from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.documents.content.content import Content
 from ulna.documents.content.standing import StandingArm
+from ulna.documents.drawn import arm as drawn_arm
 from ulna.documents.gather import gather
 from ulna.documents.html.arm_plot import arm_plot, rules
 from ulna.documents.html.page import render
@@ -85,7 +86,7 @@ def test_names_that_no_font_has_do_not_stop_the_paper() -> None:
     ("name", "drawn"), [("3 elbow", "3 elbow"), ("3 関節", "3"), ("12", "12"), ("测头", ""), ("bent", "bent")]
 )
 def test_of_a_name_that_cannot_be_drawn_its_number_stays(name: str, drawn: str) -> None:
-    assert on_paper._plain(name) == drawn
+    assert drawn_arm._plain(name) == drawn
 
 
 def test_the_picture_follows_the_theme_and_prints_light() -> None:

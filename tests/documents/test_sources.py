@@ -251,3 +251,22 @@ def test_nothing_fitted(tmp_path):
     words = " ".join("".join(Page(render(content)).words).split())
     assert "Nothing was fitted: every parameter is held." in words
     assert "there are no observability indices" in words
+
+
+def test_a_result_in_memory_says_what_its_files_say(tmp_path: Path) -> None:
+    """Its study goes along; from its files that is found by its path, or given in memory."""
+    study = write_lengths(tmp_path)
+    result = ulna.calibrate(study)
+    result.save(tmp_path / "out")
+    in_memory = gather(result)
+    assert in_memory.provenance.result == "result in memory"
+    assert in_memory.clouds
+    for other in (gather(tmp_path / "out"), gather(tmp_path / "out", ulna.Study.load(study))):
+        assert other.parameters.rows == in_memory.parameters.rows
+        assert [each.x.tolist() for each in other.clouds] == [each.x.tolist() for each in in_memory.clouds]
+        assert [file.state for file in other.provenance.files] == [file.state for file in in_memory.provenance.files]
+    other_study = write_lengths(tmp_path / "other", rows=90)
+    with pytest.raises(UlnaInputError, match="was not made from it"):
+        gather(result, ulna.Study.load(other_study))
+    with pytest.raises(TypeError, match="got a Study, expected a result"):
+        gather(result.study)  # type: ignore[arg-type]

@@ -101,7 +101,7 @@ def test_a_drawing_in_metres_becomes_metres_again(tmp_path: Path) -> None:
 
 
 def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
-    source = read_source(FOSSILS / "result-1.json", "a URDF")
+    source = read_source(FOSSILS / "result-1.json", "a URDF", has_base=True)
     (remark,) = source.remarks
     says(
         remark,
@@ -109,26 +109,26 @@ def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
         "what they left open of them is as the calibration started",
         "'identifiability'",
     )
-    assert read_source(FOSSILS / "arm-1.toml", "a URDF").remarks == []
+    assert read_source(FOSSILS / "arm-1.toml", "a URDF", has_base=True).remarks == []
     document = json.loads((FOSSILS / "result-1.json").read_text())
     document["fit"] |= {"converged": False, "termination": "poor-minimum"}
     document["parameters"] = [row for row in document["parameters"] if row["name"] != "joint.1.d"]
     (tmp_path / "result.json").write_text(json.dumps(document))
-    failed, _ = read_source(tmp_path / "result.json", "a URDF").remarks
+    failed, _ = read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks
     says(failed, "result.json: the fit did not converge (poor-minimum)", "do not use these numbers")
     (tmp_path / "result.json").write_text(json.dumps(document | {"fit": 1, "parameters": [2, {"status": 3}]}))
-    assert read_source(tmp_path / "result.json", "a URDF").remarks == []
+    assert read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks == []
 
 
 def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not_carried(_arm(arms.elbow())) == []
+    assert not_carried(_arm(arms.elbow()), has_base=True) == []
     says(
         remark_not_carried(["harmonics of joint 2", "compliance"], "a URDF", Path("arm.toml")),
         "arm.toml: a URDF has no place for harmonics of joint 2, compliance",
         "differ from the arm's",
     )
-    monkeypatch.setattr("ulna.exchange.export.source.not_carried", lambda arm: [f"{arm.n} springs"])
-    assert "4 springs" in read_source(FOSSILS / "arm-1.toml", "a URDF").remarks[0]
+    monkeypatch.setattr("ulna.exchange.export.source.not_carried", lambda arm, has_base: [f"{arm.n} springs"])
+    assert "4 springs" in read_source(FOSSILS / "arm-1.toml", "a URDF", has_base=True).remarks[0]
 
 
 def test_a_sign_that_is_not_known_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,5 +136,19 @@ def test_a_sign_that_is_not_known_cannot_be_written(monkeypatch: pytest.MonkeyPa
     unknown = replace(unknown, joints=(replace(unknown.joints[0], sign=0), *unknown.joints[1:]))
     monkeypatch.setattr("ulna.exchange.export.source.Arm.load", lambda _: unknown)
     with pytest.raises(UlnaInputError) as caught:
-        read_source(Path("arm.toml"), "a URDF")
+        read_source(Path("arm.toml"), "a URDF", has_base=True)
     says(str(caught.value), "arm.toml: key 'joint.1.sign': got 0", "expected 1 or -1", "Calibrate first")
+
+
+def test_where_the_first_axis_stands_goes_along(tmp_path: Path) -> None:
+    """It leans and stands aside in the base frame: the root link of a URDF."""
+    arm = _arm(arms.snake())
+    effects = replace(arm.joints[0].effects, base_tilt_rad=(0.02, -0.03), base_offset_mm=(4.0, -7.0))
+    leaning = replace(arm, joints=(replace(arm.joints[0], effects=effects), *arm.joints[1:]))
+    path = write(tmp_path, urdf_text(leaning))
+    q_rad = poses(arm.n)
+    for probe in arm.probes:
+        assert np.abs(drawn_tips(path, probe, q_rad) - leaning.tip(q_rad, probe)).max() < 1e-9
+    assert np.abs(leaning.tip(q_rad, probe) - arm.tip(q_rad, probe)).max() > 1.0
+    assert not_carried(leaning, has_base=True) == []
+    assert len(not_carried(leaning, has_base=False)) == 2

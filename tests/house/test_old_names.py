@@ -91,10 +91,10 @@ def test_a_module_in_the_place_of_a_function_does_what_the_function_does() -> No
         "import warnings; warnings.simplefilter('ignore')\n"
         "import ulna.calibrate\n"
         "try:\n    ulna.calibrate(None, nothing=1)\n"
-        "except ulna.UlnaInputError as error:\n    print(error)\n"
+        "except TypeError as error:\n    print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "there is no fit option 'nothing'" in done.stdout
+    assert "got None, expected a study" in done.stdout
 
 
 def test_the_public_names_are_those_of_the_list() -> None:

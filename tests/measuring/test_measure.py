@@ -17,6 +17,7 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.measuring.job import MeasureJob
 from ulna.measuring.measure import measure_to_stream
 
 PROBES = {"bent": Probe(35.0, -16.0, 224.0), "straight": Probe(0.0, 0.0, 238.0)}
@@ -151,12 +152,12 @@ def test_one_bad_cell_leaves_no_output(tmp_path: Path, out: str) -> None:
 def test_to_a_stream_nothing_goes_out_before_all_is_checked(tmp_path: Path) -> None:
     q = angles(150_000)
     good, bad = io.BytesIO(), io.BytesIO()
-    done = measure_to_stream(_saved(tmp_path), write(tmp_path / "r.csv", q), None, good)
+    done = measure_to_stream(MeasureJob(_saved(tmp_path), write(tmp_path / "r.csv", q)), good)
     assert done.rows == 150_000
     np.testing.assert_array_equal(pl.read_csv(good.getvalue()).to_numpy(), arm().tip(q))
     q[149_999, 0] = 100.0
     with pytest.raises(UlnaInputError, match=r"row 150000 .*column 'q1': got 100 rad.*degrees or counts"):
-        measure_to_stream(_saved(tmp_path), write(tmp_path / "r.csv", q), None, bad)
+        measure_to_stream(MeasureJob(_saved(tmp_path), write(tmp_path / "r.csv", q)), bad)
     assert bad.getvalue() == b""
 
 
@@ -227,9 +228,10 @@ def test_the_whole_covariance_of_each_point(tmp_path: Path) -> None:
     for unit, mm in (("mm", 1.0), ("in", 25.4)):
         table = ulna.measure(known, path, covariance=True, units=unit).table  # type: ignore[arg-type]
         assert table is not None
-        assert table.columns == ["x", "y", "z", "u_x", "u_y", "u_z", "c_xy", "c_xz", "c_yz"]
-        beside = np.stack([expected[:, 0, 1], expected[:, 0, 2], expected[:, 1, 2]], axis=1)
-        np.testing.assert_allclose(table.select("c_xy", "c_xz", "c_yz").to_numpy(), beside / mm**2, rtol=1e-9)
+        six = ["c_xx", "c_xy", "c_xz", "c_yy", "c_yz", "c_zz"]
+        assert table.columns == ["x", "y", "z", "u_x", "u_y", "u_z", *six]
+        i, j = np.triu_indices(3)
+        np.testing.assert_allclose(table.select(six).to_numpy(), expected[:, i, j] / mm**2, rtol=1e-9)
         u = np.sqrt(np.diagonal(expected, axis1=1, axis2=2)) / mm
         np.testing.assert_allclose(table.select("u_x", "u_y", "u_z").to_numpy(), u, rtol=1e-9)
     with pytest.raises(UlnaInputError, match=r"no uncertainty is known of this arm"):

@@ -16,6 +16,7 @@ import ulna
 from ulna import InputWarning, UlnaInputError
 from ulna.formats.layout import Layout
 from ulna.formats.table import read_header, stream
+from ulna.measuring.job import MeasureJob
 from ulna.measuring.measure import measure_to_stream
 
 Q = np.random.default_rng(5).uniform(-3, 3, (60, 7)).round(9)
@@ -103,7 +104,7 @@ def test_one_bad_cell_is_named_and_nothing_goes_out(tmp_path: Path) -> None:
     sheet(TABLE, tmp_path / "b.xlsx", edit=lambda page: page.__setitem__("C41", None))
     out = io.BytesIO()
     with pytest.raises(UlnaInputError, match=r"row 40 \(Sheet1!C41\), column 'q3': the cell is empty"):
-        measure_to_stream(tmp_path / "arm.toml", tmp_path / "b.xlsx", None, out)
+        measure_to_stream(MeasureJob(tmp_path / "arm.toml", tmp_path / "b.xlsx"), out)
     assert out.getvalue() == b""
     dialect(";", ",")(
         TABLE.with_columns(q3=pl.when(pl.int_range(60) == 39).then(99.5).otherwise("q3")), tmp_path / "b.csv"

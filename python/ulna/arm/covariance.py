@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.digits import uncertainty
+from ulna.ground.shown import About, Shown, Table
 
 
-@dataclass(frozen=True)
-class ParameterCovariance:
+@dataclass(frozen=True, repr=False)
+class ParameterCovariance(Shown):
     """What a calibration says about its parameters."""
 
     names: list[str]
@@ -38,3 +40,13 @@ class ParameterCovariance:
             if combination:
                 lost.append(direction | {"combination": combination})
         return ParameterCovariance([self.names[k] for k in kept], self.matrix[np.ix_(kept, kept)], lost)
+
+    def about(self) -> About:
+        """Standard uncertainties; correlations are in the matrix."""
+        u = np.sqrt(np.maximum(np.diag(self.matrix), 0.0)) if self.names else np.zeros(0)
+        known = [float(value) if np.isfinite(value) else None for value in u]
+        rows = [[name, uncertainty(value)] for name, value in zip(self.names, known, strict=True)]
+        lost = f", {len(self.lost)} directions not determined" if self.lost else ""
+        return About(
+            f"Covariance of {len(self.names)} parameters, mm and rad{lost}", {}, [Table(["parameter", "u"], rows)]
+        )

@@ -22,13 +22,22 @@ from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
 
 WHAT = 'an arm file (TOML, format = "ulna-arm/1") or a result.json'
+RESULT = "result.json"
 
 
 AnyArm = TypeVar("AnyArm", bound=ArmData)
 
 
+def result_file(path: Path) -> Path:
+    """Of a folder with one the result.json in it; any other path as it is."""
+    inside = path / RESULT
+    return inside if path.is_dir() and inside.is_file() else path
+
+
 def load_arm(path: Path, make: type[AnyArm]) -> tuple[AnyArm, str]:
-    """Read an arm from an arm file or a result.json; and the file's SHA-256. Raises UlnaInputError."""
+    """Read an arm from an arm file, a result.json or the folder with one; and the file's SHA-256. Raises
+    UlnaInputError."""
+    path = result_file(path)
     if path.suffix.lower() == ".json":
         document, digest = read_json(path, WHAT)
         check_format(document, path, "ulna-result")

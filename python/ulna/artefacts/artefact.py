@@ -8,10 +8,11 @@ from typing import Literal
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.shown import About, Shown, Table
 
 
-@dataclass(frozen=True)
-class Artefact:
+@dataclass(frozen=True, repr=False)
+class Artefact(Shown):
     """A set of features with calibrated coordinates: what the arm touches."""
 
     name: str
@@ -37,6 +38,26 @@ class Artefact:
     which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
     own: object = None
     """What only its kind knows of it, as a record of the kind's own file."""
+
+    @property
+    def stated(self) -> str:
+        """What a certificate says of it, in few words."""
+        said = []
+        if self.length_mm is not None:
+            said.append(f"{self.length_mm:g} mm")
+        if self.diameter_mm is not None:
+            said.append(f"⌀ {self.diameter_mm:g} mm")
+        if len(self.features) > 2:
+            said.append(f"{len(self.features)} features")
+        if self.u_mm:
+            said.append(f"u {self.u_mm:g} mm")
+        return ", ".join(said) or "–"
+
+    def about(self) -> About:
+        """What it is, and where its features are."""
+        rows = [[name, *(f"{value:.4f}" for value in place)] for name, place in self.features.items()]
+        tables = [Table(["feature", "x / mm", "y / mm", "z / mm"], rows)] if rows else []
+        return About(f"Artefact '{self.name}': {self.kind}, {self.stated}".removesuffix(", –"), {}, tables)
 
 
 def features_mm(artefact: Artefact) -> F64:

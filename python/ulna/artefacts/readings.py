@@ -15,6 +15,7 @@ from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.labels import Labels
 from ulna.formats.places import Places
 from ulna.ground.arrays import F64, I64, Bool
+from ulna.ground.shown import About, Shown
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ class InputFile:
     """Where they stand in the file, as its own program counts."""
 
 
-@dataclass
-class Readings:
+@dataclass(repr=False)
+class Readings(Shown):
     """All readings of one artefact, one touch a row (or, of kind length, two poses a row)."""
 
     artefact: Artefact
@@ -61,6 +62,13 @@ class Readings:
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, Labels.of(value) if name == "placement" else value)
+
+    def about(self) -> About:
+        """How many, of what."""
+        facts = {"probes": f"{len(np.unique(self.probe))} on", "standings": str(len(np.unique(self.placement_code)))}
+        said = [name for _, name, _ in self.conditions()]
+        facts |= {"said beside angles": ", ".join(said)} if said else {}
+        return About(f"{len(self)} readings of {self.artefact.kind} '{self.artefact.name}'", facts)
 
     def __len__(self) -> int:
         return len(self.q_rad)

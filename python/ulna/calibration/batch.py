@@ -18,7 +18,9 @@ from ulna.calibration.result import FILES, Result
 from ulna.formats.output import refuse_inputs
 from ulna.formats.toml import read_json
 from ulna.ground.arrays import Progress
+from ulna.ground.digits import figure_mm
 from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.ground.shown import About, Shown, Table
 from ulna.study.study import Study
 from ulna.work.pieces import Threads, Workers
 
@@ -47,8 +49,8 @@ class Calibrated:
     """The result was there already, made by this version from the same files in the same way."""
 
 
-@dataclass(frozen=True)
-class Batch:
+@dataclass(frozen=True, repr=False)
+class Batch(Shown):
     """All of them, by name."""
 
     studies: list[Calibrated]
@@ -61,6 +63,16 @@ class Batch:
     def as_dict(self) -> dict[str, Any]:
         """`batch.json`: JSON types only."""
         return {"format": FORMAT, "studies": [dataclasses.asdict(study) for study in self.studies]}
+
+    def about(self) -> About:
+        """A row for each study."""
+        rows = [
+            [each.name, each.status, str(each.readings), "–" if each.rms_mm is None else figure_mm(each.rms_mm)]
+            for each in self.studies
+        ]
+        good = sum(study.status == "converged" for study in self.studies)
+        table = Table(["study", "status", "readings", "rms / mm"], rows, texts=2)
+        return About(f"Batch of {len(rows)} studies: {good} converged", {}, [table])
 
 
 def studies_in(folder: Path, only: str = "*") -> dict[str, Path]:

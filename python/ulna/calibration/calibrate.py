@@ -13,12 +13,12 @@ from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import Progress
 from ulna.study.assembly import assemble
+from ulna.study.given import StudyLike, as_study
 from ulna.study.options import with_options
-from ulna.study.study import Study
 
 
-def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) -> Result:
-    """Fit the study's arm to its readings.
+def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: Any) -> Result:
+    """Fit the study's arm to its readings. `study`: a study, a study file or the folder with it.
 
     `overrides` replace fields of `study.fit` (``hold=["joint.6.*"]``, ``start="search"``, ``seed=1`` …).
     `progress` is called about ten times a second with (stage, done, total).
@@ -27,7 +27,7 @@ def calibrate(study: Study, progress: Progress | None = None, **overrides: Any) 
     the study's arrays when they are first read: leave those as they are until then. Raises UlnaInputError for what
     cannot be asked (fewer observations than unknowns, a pattern that matches nothing); KeyboardInterrupt.
     """
-    study = with_options(study, **overrides)
+    study = with_options(as_study(study), **overrides)
     began = time.perf_counter()
     assembled = assemble(study)
     searched = search_box(study, assembled, progress) if study.fit.method != "lm" else None

@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ulna.calibration.about import about_cross_validation
 from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import FigureEntry, Figures
@@ -27,7 +28,9 @@ from ulna.calibration.summary import GroupFigures
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown
 from ulna.study.assembly import assemble
+from ulna.study.given import StudyLike, as_study
 from ulna.study.options import with_options
 from ulna.study.parameters import hold_mask
 from ulna.study.study import Study
@@ -36,8 +39,8 @@ FORMAT: Literal["ulna-cross-validation/1"] = "ulna-cross-validation/1"
 FILES = ("cross-validation.json",)
 
 
-@dataclass
-class CrossValidation:
+@dataclass(repr=False)
+class CrossValidation(Shown):
     """How well arms fitted without a group explain that group."""
 
     by: str
@@ -64,6 +67,10 @@ class CrossValidation:
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         ).model_dump(mode="json", exclude_unset=True)
 
+    def about(self) -> About:
+        """Over all groups."""
+        return about_cross_validation(self.by, self.groups, self.before, self.after)
+
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `cross-validation.json` into a folder. Raises UlnaInputError."""
         with output_folder(folder, FILES, force) as staging:
@@ -72,7 +79,7 @@ class CrossValidation:
 
 
 def cross_validate(
-    study: Study,
+    study: StudyLike,
     by: str | int = "placement",
     progress: Progress | None = None,
     **overrides: Any,
@@ -82,7 +89,7 @@ def cross_validate(
     `by`: each placement of each artefact; each artefact; or a number of random folds (2 or more), dealt by
     `study.fit.seed`. `overrides` replace fields of `study.fit`. Raises UlnaInputError, KeyboardInterrupt.
     """
-    study = with_options(study, **overrides)
+    study = with_options(as_study(study), **overrides)
     how, left_out = folds(study, by)
     groups = []
     for number, fold in enumerate(left_out):

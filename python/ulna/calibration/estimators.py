@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 from ulna.study.assembly import Assembled
 from ulna.study.data import FitOptions
 from ulna.study.study import Study
@@ -69,6 +70,7 @@ def search_box(study: Study, assembled: Assembled, progress: Progress | None = N
             f"{study.label}: key 'fit.method': '{study.fit.method}' searches the geometry, but 'fit.free' and "
             "'fit.hold' hold all of it; expected something to search. Free some, or use method \"lm\"."
         )
+    need(f"{study.label}: key 'fit.method': '{study.fit.method}'", "scipy")
     free = np.flatnonzero(~hold)
     half = np.array([_half_width(assembled.names[k], assembled.units[k], study.fit) for k in free])
     bounds = np.stack([start[free] - half, start[free] + half], axis=1)

@@ -14,6 +14,8 @@ import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
+from ulna.arm.given import ArmLike, as_arm
+from ulna.calibration.about import about_evaluation
 from ulna.calibration.figures import figures
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
@@ -22,15 +24,17 @@ from ulna.calibration.result_file import EvaluatedEntry, EvaluationFile, Provena
 from ulna.calibration.running import run_fit
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.shown import About, Shown
 from ulna.study.data import FitOptions
+from ulna.study.given import StudyLike, as_study
 from ulna.study.study import Study
 
 FORMAT: Literal["ulna-evaluation/1"] = "ulna-evaluation/1"
 FILES = ("evaluation.json", "residuals.csv")
 
 
-@dataclass
-class Evaluation:
+@dataclass(repr=False)
+class Evaluation(Shown):
     """What an arm makes of readings."""
 
     arm: Arm
@@ -57,6 +61,10 @@ class Evaluation:
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         ).model_dump(mode="json", exclude_unset=True)
 
+    def about(self) -> About:
+        """Over all readings."""
+        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts)
+
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `evaluation.json` and `residuals.csv` into a folder: both or none. Raises UlnaInputError."""
         with output_folder(folder, FILES, force) as staging:
@@ -65,11 +73,13 @@ class Evaluation:
             self.residuals.write_csv(staging / "residuals.csv")
 
 
-def evaluate(arm: Arm, study: Study, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:
+def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:
     """Apply `arm` to the study's readings; the study's own arm only gives the probes their names.
 
-    Raises UlnaInputError where the arm has another number of joints or lacks a probe that the readings use.
+    `arm`: an arm, a result, or a path of one; `study`: a study or its path. Raises UlnaInputError where the arm has
+    another number of joints or lacks a probe that the readings use.
     """
+    arm, study = as_arm(arm), as_study(study)
     # nothing of the arm is fitted, so what the study says of the fit does not matter
     fitting = dataclasses.replace(study_of_arm(study, arm), fit=FitOptions(seed=study.fit.seed))
     fitted = run_fit(fitting, lambda names: np.ones(len(names), dtype=bool), progress)

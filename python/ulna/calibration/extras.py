@@ -22,6 +22,7 @@ from ulna.calibration.placements import Figures
 from ulna.calibration.running import run_fit
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.quantiles import student
 from ulna.study.assembly import assemble
 from ulna.study.study import Study
 
@@ -136,12 +137,10 @@ def compared(
     else:
         return None
     without_mm, with_mm = np.array(pairs).mean(axis=0).tolist()
-    from scipy.special import stdtrit  # longer to load than most fits take, and most studies judge no block
-
     gains = np.array([a - b for a, b in pairs])
     better = float(gains.mean())
     u = float(gains.std(ddof=1) / np.sqrt(len(gains))) if len(gains) > 1 else None
     verdict: Verdict = "undecided"
-    if u is not None and abs(better) > u * stdtrit(len(gains) - 1, CONFIDENCE):
+    if u is not None and abs(better) > u * float(student(len(gains) - 1, CONFIDENCE)):
         verdict = "earned" if better > 0 else "not-earned"
     return JudgedExtra(extra, figure, without_mm, with_mm, better, u, len(pairs), by, verdict, order)

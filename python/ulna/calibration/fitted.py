@@ -20,6 +20,8 @@ from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
 from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
+from ulna.calibration.placements import Figures
+from ulna.calibration.poses import PlacementPose, placement_poses
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
@@ -53,11 +55,14 @@ class FittedStudy:
             "fit": self._summary,
             "residuals": lambda: self._residuals,
             "artefacts": lambda: by_placement(self._after),
+            "placements": self._poses,
             "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: over_all(self._after),
+            "without_far_off": self._without_far_off,
             "provenance": lambda: provenance(self.study, self.when, self.seconds),
             "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
+            "study": lambda: self.study,
         }
 
     @cached_property
@@ -78,6 +83,24 @@ class FittedStudy:
     def _residuals(self) -> pl.DataFrame:
         return residual_table(self.study, self.core)
 
+    def _poses(self) -> list[PlacementPose]:
+        core = self.core
+        of_parameters = self._covariance.of(self.assembled.arm.parameter_names)
+        freedom = core.degrees_of_freedom
+        variance_mm2 = core.cost / freedom if freedom else float("nan")
+        residuals = [core.residuals(group) for group in range(len(self.study.readings))]
+        return placement_poses(self._arm, self.study, residuals, of_parameters, variance_mm2)
+
+    def _without_far_off(self) -> Figures | None:
+        if self.study.fit.loss == "none" or not self._any_outliers():
+            return None
+        groups = [
+            group.select(~self.core.outliers(number))
+            for number, group in enumerate(self.study.readings)
+            if not self.core.outliers(number).all()
+        ]
+        return overall_figures(self._arm, dataclasses.replace(self.study, readings=groups))
+
     def _any_outliers(self) -> bool:
         return any(self.core.outliers(group).any() for group in range(len(self.study.readings)))
 
@@ -88,9 +111,14 @@ class FittedStudy:
             readings=sum(len(group) for group in study.readings),
             method=study.fit.method,
             loss=study.fit.loss,
+            signs_found=self._signs_found(),
             box_evaluations=0 if self.searched is None else self.searched.evaluations,
             scatter={group.artefact.name: scale for group, scale in zip(study.readings, self.core.scales, strict=True)},
         )
+
+    def _signs_found(self) -> dict[str, int]:
+        found = zip(self.study.arm.unknown_signs.tolist(), self.core.arm.signs.tolist(), strict=True)
+        return {f"joint.{k}.sign": int(sign) for k, (unknown, sign) in enumerate(found, 1) if unknown}
 
     @cached_property
     def _covariance(self) -> ParameterCovariance:

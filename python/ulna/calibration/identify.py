@@ -6,16 +6,18 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ulna.arm.directions import combination
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown
 from ulna.study.assembly import assemble
-from ulna.study.study import Study
+from ulna.study.given import StudyLike, as_study
 
 if TYPE_CHECKING:
     import ulna._core as _core
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Shown):
     """Which free parameters, and which combinations of them, readings determine (MODEL: rank of the Jacobian)."""
 
     parameters: int
@@ -59,14 +61,32 @@ class Identification:
         """JSON types only."""
         return asdict(self)
 
+    def about(self) -> About:
+        """How many directions are determined, and what is not."""
+        facts = {"condition": f"{self.condition:.2g} (smallest singular value over the largest)"}
+        if self.from_prior:
+            facts["prior alone"] = ", ".join(self.from_prior)
+        weak = [f"weak: {combination(each['combination'])}: u {each['u']:.2g} {each['unit']}" for each in self.weak]
+        return About(
+            f"Identification: {self.determined} of {self.parameters} combinations of parameters determined",
+            facts,
+            notes=[*map(not_determined, self.lost), *weak],
+        )
 
-def identify(study: Study) -> Identification:
+
+def not_determined(direction: dict[str, Any]) -> str:
+    """A lost direction as a remark."""
+    return f"not determined: {combination(direction['combination'])}: {direction['because']}"
+
+
+def identify(study: StudyLike) -> Identification:
     """What the study's readings can determine at its arm's start values, without fitting.
 
     The study's `fit.free` and `fit.hold` say what is asked about. Raises UlnaInputError.
     """
     import ulna._core as _core
 
+    study = as_study(study)
     assembled = assemble(study)
     if assembled.hold.all():
         raise UlnaInputError(

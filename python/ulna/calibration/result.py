@@ -16,20 +16,30 @@ import polars as pl
 
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
-from ulna.arm.covariance_file import covariance_of_result
+from ulna.arm.covariance_file import covariance_of_result, noise_of_result
 from ulna.arm.file import arm_document, arm_toml
+from ulna.arm.given import StandsForArm
 from ulna.arm.probes import ProbeView, probe_views
+from ulna.calibration.about import about_result
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures, Placements, figures_of
+from ulna.calibration.plots import Plots
+from ulna.calibration.poses import PlacementPose
 from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.models import fill_json
 from ulna.formats.output import output_folder
 from ulna.formats.toml import check_format, read_json
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 from ulna.ground.on_demand import OnDemand
+from ulna.ground.provided import provided
+from ulna.ground.shown import About, Shown
+from ulna.study.given import StandsForStudy
+from ulna.study.study import Study
 
 if TYPE_CHECKING:
     from ulna.calibration.result_file import ResultFile
@@ -44,12 +54,12 @@ RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
 FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
 """All that a result may be written to."""
 
-AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras")
+AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "placements")
 """Fields that are the same in the file and in memory."""
 
 
-@dataclass
-class Result(OnDemand):
+@dataclass(repr=False)
+class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """A calibrated arm and everything that is known about it."""
 
     arm: Arm
@@ -67,10 +77,47 @@ class Result(OnDemand):
     after: Figures
     """The same over all placements, of the calibrated arm."""
     provenance: dict[str, Any]
+    without_far_off: Figures | None = field(default_factory=lambda: None)  # no class attribute: made on demand
+    """As `after`, without the readings that are far off; None where there are none, or no loss let them count less."""
+    placements: Sequence[PlacementPose] = field(default_factory=list)
+    """Where each standing of an artefact with features was found, in the arm's base frame, with uncertainties."""
     outliers: list[dict[str, Any]] = field(default_factory=list)
     """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
     extras: list[JudgedExtra] = field(default_factory=list)
     """Blocks beyond geometry, each judged by readings left out."""
+    study: Study | None = field(default_factory=lambda: None, compare=False)  # made on demand, so no class has one
+    """What it was made of; None of a result that was read from a file, or sent to another process."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        return super().__getstate__() | {"study": None}
+
+    @property
+    def encoder_u_rad(self) -> F64 | None:
+        """(n,) standard deviation of each encoder's reading, where the study stated it."""
+        return noise_of_result({"provenance": self.provenance}, self.arm, Path("result"))
+
+    def its_study(self) -> Study:
+        """What it was made of. Raises UlnaInputError of a result that was read from a file."""
+        if self.study is None:
+            name = self.provenance.get("study") or "the study that it was made of"
+            raise UlnaInputError(
+                f"a result of '{self.arm.name}' that was read from a file has no readings; expected a study. Name "
+                f"{name}."
+            )
+        return self.study
+
+    @property
+    def plot(self) -> Plots:
+        """Its drawings, those of the report: `result.plot.residuals()`, `.parameters()`, `.joint(3)`, … Raises
+        UlnaInputError where Matplotlib is not installed."""
+        need("result.plot", "matplotlib")
+        plots: Plots = provided("plots of a result")(self)
+        return plots
+
+    def about(self) -> About:
+        """Before and after, the parameters, what was not determined."""
+        figures = self.before, self.after
+        return about_result(self.arm, self.fit, figures, self.parameters, self.identifiability, len(self.outliers))
 
     @property
     def probes(self) -> list[ProbeView]:
@@ -99,9 +146,11 @@ class Result(OnDemand):
             outliers=[OutlierEntry.model_construct(None, **entry) for entry in self.outliers],
             extras=self.extras,
             artefacts=[entry.entry() for entry in self.artefacts],
+            placements=list(self.placements),
             overall=OverallEntry.model_construct(
                 before=FigureEntry.model_construct(None, **self.before),
                 after=FigureEntry.model_construct(None, **self.after),
+                without_far_off=_entry(self.without_far_off),
             ),
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         )
@@ -125,7 +174,7 @@ class Result(OnDemand):
         written = ["result.json", "arm.toml", RESIDUALS if many else "residuals.csv"]
         written += [PLACEMENTS] if many_placements else []
         with output_folder(folder, written, force, instead_of=[name for name in FILES if name not in written]) as here:
-            file = dataclasses.replace(self, artefacts=[]).file() if many_placements else self.file()
+            file = dataclasses.replace(self, artefacts=[], placements=[]).file() if many_placements else self.file()
             if many_placements:
                 file.artefacts_file = write_beside(Placements.of(self.artefacts).table, here / PLACEMENTS)
             if many:
@@ -162,10 +211,20 @@ class Result(OnDemand):
                 "provenance": lambda: document["provenance"],
                 "before": lambda: figures_of(file.overall.before),
                 "after": lambda: figures_of(file.overall.after),
+                "without_far_off": lambda: _figures(file.overall.without_far_off),
                 "artefacts": lambda: _placements(file, path),
+                "study": lambda: None,
                 "residuals": _residuals(file, rows, path),
             }
         )
+
+
+def _entry(figures: Figures | None) -> FigureEntry | None:
+    return None if figures is None else FigureEntry.model_construct(None, **figures)
+
+
+def _figures(entry: FigureEntry | None) -> Figures | None:
+    return None if entry is None else figures_of(entry)
 
 
 def _placements(file: ResultFile, path: Path) -> Sequence[PlacementFigures]:

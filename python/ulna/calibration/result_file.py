@@ -16,6 +16,7 @@ from ulna.arm.tables import CartesianTip
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import FigureEntry, PlacementEntry
+from ulna.calibration.poses import PlacementPose
 from ulna.calibration.residuals import ReadingEntry, ResidualEntry
 from ulna.calibration.summary import FitSummary, GroupFigures, Parameter
 from ulna.formats.models import Open
@@ -63,6 +64,8 @@ class OverallEntry(Open):
     """Of the arm that the fit started from."""
     after: FigureEntry
     """Of the calibrated arm."""
+    without_far_off: FigureEntry | None = None
+    """The same without the readings that are far off, where a loss let them count less."""
 
 
 class ProvenanceEntry(Open):
@@ -114,6 +117,8 @@ class ResultFile(Open):
     """Of each placement, in the order of the study."""
     artefacts_file: TableBeside | None = None
     """Has them in place of the list above where there are very many placements."""
+    placements: list[PlacementPose] = Field(default_factory=list)
+    """Where each standing of an artefact with features was found, in the arm's base frame; of no more than 20 000."""
     overall: OverallEntry
     provenance: ProvenanceEntry
     residuals: list[ResidualEntry] = Field(default_factory=list)

@@ -64,6 +64,8 @@ class FitSummary:
     """Sets of joints that may all count the other way: readings and the arm file do not tell."""
     mirrored_signs: list[list[int]] = field(default_factory=list)
     """Those of them with which the arm is the mirror image of the one found; with the others it is the same arm."""
+    signs_found: dict[str, int] = field(default_factory=dict)
+    """Of joints whose sign the arm file had as not known, `joint.3.sign`: what was found, 1 or -1."""
     common_factor: float | None = None
     """Found over drawn, where all lengths of the arm are off the arm file by one factor: a stated size may be wrong."""
     method: Method = "lm"

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from ulna.cli.commands import Commands
+from ulna.cli.completing import get_ready
 from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
 
 app = typer.Typer(
@@ -14,7 +15,7 @@ app = typer.Typer(
     cls=Commands,
     no_args_is_help=True,
     add_completion=False,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -44,6 +45,7 @@ def ulna(
 
 def main() -> None:
     """The console script."""
+    get_ready()
     try:
         app(prog_name="ulna")
     except KeyboardInterrupt:

@@ -6,18 +6,22 @@ import sys
 
 import typer
 
-from ulna.cli.options import Force, Json, OutFolder, StudyArgument
+from ulna.cli.options import All, Force, Json, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
-def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False, as_json: Json = False) -> None:
+def calibrate(
+    study: StudyArgument, out: OutFolder = None, force: Force = False, as_json: Json = False, everything: All = False
+) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
     Prints the figures before and after, the parameters with their standard uncertainties, what the readings could
-    not determine, why, and what would help, whether blocks beyond geometry earned their place, and readings far
-    off. With -o it writes result.json, arm.toml (the calibrated arm, ready to use) and residuals.csv
-    (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not converge.
+    not determine, whether blocks beyond geometry earned their place, and readings far off, on one screen; with --all
+    every figure and parameter, why something was not determined, and what would help. Of a fit that ended badly: the
+    rows that are met worst, and what to try. With -o it writes result.json, arm.toml (the calibrated arm, ready to
+    use) and residuals.csv (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not
+    converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
@@ -25,6 +29,7 @@ def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False,
     from ulna.calibration.result import FILES
     from ulna.calibration.suspects import suspicion
     from ulna.cli import output
+    from ulna.cli.printed.brief import brief_report
     from ulna.cli.printed.calibration import calibration_report
     from ulna.cli.printed.hints import where_to_look
     from ulna.formats.output import check_output, refuse_inputs
@@ -42,14 +47,17 @@ def calibrate(study: StudyArgument, out: OutFolder = None, force: Force = False,
     if as_json:
         result.write_json(sys.stdout.write)
     else:
-        output.print_renderable(*calibration_report(result))
+        suspected = None if result.fit.converged else suspicion(loaded, result)
+        brief = None if everything else brief_report(result, output.columns(), suspected)
+        output.print_renderable(*(calibration_report(result) if brief is None else brief))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES if (out / name).exists())}")
     elif not as_json:
         output.say("Nothing was written: give -o DIR to keep the result.")
     if not result.fit.converged:
         output.say(f"The fit did not converge ({result.fit.termination}): do not use these numbers.")
-        hint = where_to_look(result, suspicion(loaded, result))
-        if hint:
-            output.say(hint)
+        if everything or as_json:
+            hint = where_to_look(result, suspicion(loaded, result))
+            if hint:
+                output.say(hint)
         raise typer.Exit(1)

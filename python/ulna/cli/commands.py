@@ -11,8 +11,11 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from ulna.cli.help import Command, Group, first_paragraph
+
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
+    "demo": "ulna.cli.demo",
     "new": "ulna.cli.new",
     "show": "ulna.cli.show",
     "calibrate": "ulna.cli.calibrate",
@@ -28,6 +31,7 @@ COMMANDS = {
     "report": "ulna.cli.report",
     "verify": "ulna.cli.verify",
     "reproduce": "ulna.cli.reproduce",
+    "completion": "ulna.cli.completion",
 }
 #: what has commands of its own → the module that has them, as `app`
 GROUPS = {
@@ -55,10 +59,14 @@ class _Loading(Mapping[str, TyperCommand | TyperGroup]):
 
 
 def _command(name: str, module: str) -> TyperCommand | TyperGroup:
-    app = typer.Typer(add_completion=False)
-    app.command(name)(getattr(importlib.import_module(module), module.rpartition(".")[2]))
+    app = typer.Typer(add_completion=False, rich_markup_mode=None)
+    app.command(name, cls=Command)(_function(name, module))
     made: Any = get_command(app)  # typer's own name of the type is private
     return made  # type: ignore[no-any-return]
+
+
+def _function(name: str, module: str) -> Any:
+    return getattr(importlib.import_module(module), name.replace("-", "_"))
 
 
 def _group(module: str) -> TyperCommand | TyperGroup:
@@ -66,9 +74,18 @@ def _group(module: str) -> TyperCommand | TyperGroup:
     return made  # type: ignore[no-any-return]
 
 
-class Commands(TyperGroup):
+class Commands(Group):
     """The group `ulna`: its commands are those of the two tables above."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.commands: Any = _Loading()
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [*COMMANDS, *GROUPS]
+
+    def listed(self, ctx: Any) -> list[tuple[str, str]]:
+        """From what is written in the modules: making all commands takes as long as all else that `--help` does."""
+        written = {name: _function(name, module).__doc__ for name, module in COMMANDS.items()}
+        written |= {name: importlib.import_module(module).app.info.help for name, module in GROUPS.items()}
+        return [(name, first_paragraph(said)) for name, said in written.items()]

@@ -7,10 +7,13 @@ from typing import Annotated, Any
 
 import typer
 
+from ulna.cli.help import Command, Group
 from ulna.cli.options import ArmFile, Force, one_of
 from ulna.cli.running import guard
 
 app = typer.Typer(
+    cls=Group,
+    rich_markup_mode=None,
     name="export",
     help="Write an arm, calibrated or not, in the form that another program takes.",
     no_args_is_help=True,
@@ -19,7 +22,7 @@ app = typer.Typer(
 )
 
 
-@app.command("urdf")
+@app.command("urdf", cls=Command)
 @guard
 def urdf(
     arm: ArmFile,
@@ -75,7 +78,7 @@ def urdf(
         output.say(f"warning: {remark}")
 
 
-@app.command("dh")
+@app.command("dh", cls=Command)
 @guard
 def dh(
     arm: ArmFile,

@@ -8,14 +8,17 @@ from typing import Annotated, Any
 
 import typer
 
+from ulna.cli.help import Command, Group
 from ulna.cli.options import one_of
 from ulna.cli.running import guard
 
 app = typer.Typer(
+    cls=Group,
+    rich_markup_mode=None,
     name="import",
     help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
     "Any other table is named in a study as it is (keys separator, decimal, sheet, dataset, columns of "
-    "[\\[readings]]); describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a "
+    "[[readings]]); describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a "
     "table).",
     no_args_is_help=True,
     add_completion=False,
@@ -27,7 +30,7 @@ Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist
 AsParquet = Annotated[bool, typer.Option("--parquet", help="Write the readings as Parquet, not CSV.")]
 
 
-@app.command("mukca")
+@app.command("mukca", cls=Command)
 @guard
 def mukca(
     folder: Annotated[
@@ -55,7 +58,7 @@ def mukca(
     _say(f"Next: ulna cross-validate {out / 'study.toml'} --by placement")
 
 
-@app.command("ipa-ur10")
+@app.command("ipa-ur10", cls=Command)
 @guard
 def ipa_ur10(
     file: Annotated[
@@ -84,7 +87,7 @@ def ipa_ur10(
     _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
 
 
-@app.command("urdf")
+@app.command("urdf", cls=Command)
 @guard
 def urdf(
     file: Annotated[Path, typer.Argument(help="The robot's drawing (URDF).")],
@@ -117,7 +120,7 @@ def urdf(
         _say(remark)
 
 
-@app.command("dh")
+@app.command("dh", cls=Command)
 @guard
 def dh(
     file: Annotated[

@@ -11,29 +11,46 @@ import typer
 from ulna.cli.options import ArmFile, Force, Json
 from ulna.cli.running import guard
 
+STREAM = Path("-")
+"""In place of a file: stdin, stdout."""
+
 
 @guard
 def measure(
     arm: ArmFile,
     readings: Annotated[
         Path,
-        typer.Argument(metavar="READINGS", help="CSV, Parquet, .xlsx, .mat or HDF5.", show_default=False),
+        typer.Argument(
+            metavar="READINGS", help="CSV, Parquet, .xlsx, .mat or HDF5; - for CSV from stdin.", show_default=False
+        ),
     ],
     probe: Annotated[
         str | None, typer.Option("--probe", metavar="NAME", help="Which probe is on.", show_default=False)
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="FILE", help="CSV, or Parquet by its ending; without it CSV on stdout."),
+        typer.Option(
+            "-o", "--out", metavar="FILE", help=".csv, .tsv, .parquet, .xlsx or .jsonl; without it CSV on stdout."
+        ),
     ] = None,
-    angle: Annotated[str, typer.Option("--angle", help="Of the readings: rad, deg or counts.")] = "rad",
+    like: Annotated[
+        Path | None,
+        typer.Option("--like", metavar="STUDY", help="The readings are written as those of this study file."),
+    ] = None,
+    like_readings: Annotated[
+        int | None,
+        typer.Option("--like-readings", metavar="N", help="As which of its readings (1, 2, …), where they differ."),
+    ] = None,
+    angle: Annotated[
+        str | None, typer.Option("--angle", help="Of the readings: rad (usual), deg or counts.", show_default=False)
+    ] = None,
     units: Annotated[str, typer.Option("--units", help="Of the points: mm, m or in.")] = "mm",
     temperature: Annotated[
         float | None,
         typer.Option("--temperature", metavar="C", help="Of all readings, °C, where they do not say it."),
     ] = None,
     covariance: Annotated[
-        bool, typer.Option("--covariance", help="Also c_xy, c_xz, c_yz, beside the diagonal of the covariance.")
+        bool, typer.Option("--covariance", help="Also c_xx, c_xy, c_xz, c_yy, c_yz, c_zz: each point's covariance.")
     ] = False,
     separator: Annotated[
         str | None, typer.Option("--separator", metavar="SIGN", help='CSV: between columns; or "tab".')
@@ -87,34 +104,59 @@ def measure(
     a point depends on what the calibration could not determine, and stderr says why. An arm whose links grow with
     temperature needs a column temperature, or --temperature; one whose joints have backlash the columns approach1, ….
     --json prints one object per
-    point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole.
+    point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole. From
+    stdin (-) each row is measured and written as it comes.
 
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]
     """
     from ulna.cli import output
-    from ulna.cli.endings import by_ending
     from ulna.formats.layout import Layout
-    from ulna.formats.output import refuse_inputs
-    from ulna.measuring.measure import measure as measure_to_file
-    from ulna.measuring.measure import measure_to_stream
+    from ulna.formats.tables.coming import coming_table
+    from ulna.ground.errors import UlnaInputError
+    from ulna.measuring.job import MeasureJob
+    from ulna.measuring.like import like_study
+    from ulna.measuring.measure import files_of, measure_to_file, measure_to_stream
+    from ulna.measuring.written import writer_of
+    from ulna.study.readings.readings import WHAT
 
-    choices: Any = {"angle": angle, "units": units, "temperature_c": temperature, "covariance": covariance}
-    table: Any = {"separator": separator, "decimal": decimal, "sheet": sheet}
+    if like is None and like_readings is not None:
+        raise UlnaInputError(f"option --like-readings: got {like_readings} without --like; expected it with one.")
+    to = None if out is None or out == STREAM else out
+    if to is not None:
+        writer_of(to)  # told before the work
+    table: Any = {"separator": separator, "decimal": decimal, "sheet": sheet, "dataset": dataset}
     table |= {"thousands": thousands, "encoding": encoding, "comment": comment, "units_row": units_row}
-    table |= {"fill_down": tuple(fill_down or ()), "header": (header or True) if not no_header else False}
-    layout = Layout.of_options(column, name, dataset=dataset, **table)
-    if out is not None:
-        refuse_inputs([out], [arm, readings])
-        by_ending(out, {".csv": "csv", ".txt": "csv", ".parquet": "parquet", "": "csv"}, [], folder=False)
-    if out is None:
-        choices["layout"] = layout
-        found = measure_to_stream(arm, readings, probe, sys.stdout.buffer, json_lines=as_json, **choices)
+    table |= {"fill_down": tuple(fill_down or ())}
+    stated = Layout.of_options(column, name, **table, header=False if no_header else header or True)
+    as_study = None if like is None else like_study(like, like_readings)
+    if as_study is None:
+        layout, unused = stated, []
     else:
-        choices |= {**table, "dataset": dataset, "columns": layout.columns, "names": layout.names}
+        keys = {**table, "columns": dict(stated.columns), "names": dict(stated.names)}
+        layout = as_study.layout(keys | ({"header": stated.header} if no_header or header else {}))
+        unused, angle, probe = as_study.unused, angle or as_study.angle, probe or as_study.probe
+        for remark in as_study.remarks:
+            output.say(f"note: {remark}")
+    source = coming_table(sys.stdin.buffer, WHAT, layout) if readings == STREAM else readings
+    job = MeasureJob(
+        arm,
+        source,
+        probe,
+        angle or "rad",
+        units,
+        layout=layout,
+        temperature_c=temperature,
+        covariance=covariance,
+        unused=unused,
+    )
+    if to is None:
+        found = measure_to_stream(job, sys.stdout.buffer, json_lines=as_json)
+    else:
+        inputs = [*([] if readings == STREAM else [readings]), *files_of(arm), *([] if like is None else [like])]
         with output.progress_bar() as progress:
-            found = measure_to_file(arm, readings, probe, out, force=force, progress=progress, **choices)
+            found = measure_to_file(job, to, inputs, force, progress)
         if as_json:
             output.print_json(found.as_dict())
-        output.say(f"Written: {out} ({found.rows} points, {found.unit})")
+        output.say(f"Written: {to} ({found.rows} points, {found.unit})")
     for note in found.notes:
         output.say(f"note: {note}")

@@ -25,6 +25,7 @@ Keep = Annotated[
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]
+All = Annotated[bool, typer.Option("--all", help="Print all there is, not just one screen of it.")]
 
 
 def one_of(option: str, value: str, known: tuple[str, ...]) -> None:

@@ -46,6 +46,11 @@ def print_renderable(*parts: RenderableType) -> None:
         (wide if whole else narrow).print(part, crop=False)
 
 
+def columns() -> int:
+    """Of the terminal; 80 where there is none."""
+    return _Out(file=sys.stdout).width
+
+
 def print_names(what: str, descriptions: Mapping[str, str]) -> None:
     """A list of names, each with what it is."""
     table = Table(what, "what it is", box=None, pad_edge=False)

@@ -102,8 +102,9 @@ def _plan(
     from ulna.cli.printed.plan import plan_report
     from ulna.documents.work_sheet.sheet import NAME, check_paper, work_sheet
     from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.extras import need
     from ulna.planning.file import load_plan_spec
-    from ulna.planning.folder import files_of
+    from ulna.planning.folder import NEEDS_PICTURES, files_of
     from ulna.planning.plan import plan as run_plan
     from ulna.work.pieces import workers_at
 
@@ -113,6 +114,7 @@ def _plan(
         asked = replace(asked, within=None)
     names = [*files_of(asked.artefact), NAME]
     if out is not None:  # before the long work
+        need(NEEDS_PICTURES, "matplotlib")
         check_output(out, names, force)
         refuse_inputs((out / name for name in names), [arm, *asked.files])
         check_paper(nominal, asked, *paper)

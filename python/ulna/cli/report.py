@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ulna.cli.completing import languages
 from ulna.cli.options import Force, Json, one_of
 from ulna.cli.running import guard
 
@@ -49,7 +50,9 @@ def report(
         Path | None,
         typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
     ] = None,
-    language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
+    language: Annotated[
+        str, typer.Option("--language", metavar="CODE", help="en, de or zh.", autocompletion=languages)
+    ] = "en",
     fonts: Annotated[
         Path | None,
         typer.Option(

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol, cast
 
 import typer
 
+from ulna.cli.completing import studies
 from ulna.cli.running import guard
 
 if TYPE_CHECKING:
@@ -47,7 +48,10 @@ class ReproductionModule(Protocol):
 
 @guard
 def reproduce(
-    name: Annotated[str | None, typer.Argument(help="Which study; none: list them.", show_default=False)] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(help="Which study; none: list them.", show_default=False, autocompletion=studies),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="Folder for pictures and numbers.", show_default=False)
     ] = None,

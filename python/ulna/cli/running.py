@@ -50,6 +50,13 @@ def guard(command: Command) -> Command:
             if not _is_core_error(error):
                 raise
             _fail(str(error))
+        except ModuleNotFoundError as error:
+            from ulna.ground.extras import lacking
+
+            said = lacking(error.name or "")
+            if said is None:
+                raise
+            _fail(f"ulna {command.__name__.replace('_', '-')}: {said}")
         except MemoryError:
             _fail("not enough memory for these readings. Use fewer rows at a time or a larger machine.")
 

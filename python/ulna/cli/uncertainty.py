@@ -63,7 +63,8 @@ def uncertainty(
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.ground.errors import UlnaInputError
     from ulna.study.study import Study
-    from ulna.uncertainties.plots import FILES as MAP_FILES
+    from ulna.uncertainties.kept import FILES as MAP_FILES
+    from ulna.uncertainties.kept import check_pictures, save_volume
     from ulna.uncertainties.uncertainty import volume_uncertainty
     from ulna.uncertainties.volume_file import is_volume
 
@@ -72,6 +73,8 @@ def uncertainty(
     everywhere = is_volume(task)
     names = MAP_FILES if everywhere else [FILE]
     if out is not None:
+        if everywhere:
+            check_pictures()  # before the long work
         check_output(out, names, force)
         refuse_inputs([out / name for name in names], [result, task, *([] if performance is None else [performance])])
     if not everywhere:
@@ -84,7 +87,6 @@ def uncertainty(
             "Leave them out."
         )
     from ulna.cli.printed.volume import volume_report
-    from ulna.uncertainties.plots import save_volume
     from ulna.uncertainties.zones import as_dict
     from ulna.work.pieces import workers_at
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ulna.calibration.evaluate import study_of_arm
+from ulna.calibration.given import ResultLike
 from ulna.documents.content.acceptance import verification
 from ulna.documents.content.artefacts import artefact_rows
 from ulna.documents.content.clouds import clouds
@@ -28,6 +29,7 @@ from ulna.documents.sources.source import Calibration, Source, Taken, take
 from ulna.documents.sources.study import find_study
 from ulna.documents.sources.verification import VERIFICATION
 from ulna.ground.arrays import Progress
+from ulna.study.given import StudyLike
 
 T = TypeVar("T")
 
@@ -36,8 +38,8 @@ _STEPS = 4
 
 
 def gather(
-    result: Path,
-    study: Path | None = None,
+    result: ResultLike,
+    study: StudyLike | None = None,
     cross_validation: Path | None = None,
     evaluation: Path | None = None,
     laboratory: Path | None = None,
@@ -46,9 +48,9 @@ def gather(
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
-    result: a result.json, or the folder with it. study: of that calibration, where the result's own path to it no
-    longer leads there. cross_validation, evaluation: what those commands wrote, for readings held out. laboratory: who
-    calibrated for whom, with what. verified: what `ulna verify` wrote.
+    result: a result, a result.json, or the folder with it. study: of that calibration, where the result does not know
+    it and its path to it no longer leads there. cross_validation, evaluation: what those commands wrote, for readings
+    held out. laboratory: who calibrated for whom, with what. verified: what `ulna verify` wrote.
     progress is called with (stage, done, total).
     """
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from ulna.documents.content.content import Content
 from ulna.formats.output import check_output, output_folder, refuse_inputs, write_file
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 
 
 def _html(content: Content, language: str, _: Path | None) -> bytes:
@@ -25,12 +26,18 @@ def _pdf(content: Content, language: str, fonts: Path | None) -> bytes:
 FORMATS: dict[str, Callable[[Content, str, Path | None], bytes]] = {"html": _html, "pdf": _pdf}
 """Format → how a content becomes a file of it, in a language, with the fonts of a folder."""
 
+NEEDS = {"html": (), "pdf": ("typst", "matplotlib", "fontTools")}
+"""Format → packages that not everybody has."""
+
 
 def targets(out: Path, formats: Sequence[str], force: bool) -> dict[str, Path]:
     """Format → file: `out` itself where it ends in the one format's name, else report.FORMAT in the folder `out`.
 
-    Raises UlnaInputError where a file exists and `force` is not given, or the place is none.
+    Raises UlnaInputError where a file exists and `force` is not given, the place is none, or what writes a format is
+    not installed.
     """
+    for each in formats:
+        need(f"option --{each}", *NEEDS[each])
     known = {f".{each}" for each in FORMATS}
     if out.suffix.lower() in known and not out.is_dir():
         if len(formats) > 1 or out.suffix.lower() != f".{formats[0]}":

@@ -11,7 +11,7 @@ import polars as pl
 
 from ulna.formats.cells import number_of
 from ulna.formats.header import Header, Numeric, Piece
-from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.layout import AS_EXPECTED, AnyHeader, Layout
 from ulna.formats.tables.registry import WHAT, open_table
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
@@ -33,9 +33,13 @@ def read_header(
     start = read_bytes(path, what, limit=1 << 16)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
-    header = open_table(path, start, what, layout)
+    return named_header(open_table(path, start, what, layout), layout, known or [])
+
+
+def named_header(header: AnyHeader, layout: Layout, known: Sequence[str]) -> AnyHeader:
+    """An open table with its columns checked, and called as `layout` says. Raises UlnaInputError."""
     _check_names(header, layout)
-    return layout.mapped(header, known or [])
+    return layout.mapped(header, known)
 
 
 def _check_names(header: Header, layout: Layout) -> None:

@@ -42,6 +42,13 @@ def uncertainty(u: float | None) -> str:
     return small(u, 2) if u < 1e-4 else fixed(u, max(1 - _power(u), 0))
 
 
+def plain_uncertainty(u: float | None, unit: str) -> str:
+    """The same of lengths, angles and numbers as plain decimals, as the values beside them are: 0.0000031."""
+    if u is None or unit not in _MOST_DECIMALS or not u >= 10.0 ** -_MOST_DECIMALS[unit]:
+        return uncertainty(u)
+    return fixed(u, decimals(u, unit))
+
+
 def _power(value: float) -> int:
     """Of ten, of the first digit when two are shown: 0.0996 is 0.10."""
     return int(f"{value:.1e}".split("e")[1])

@@ -28,3 +28,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
         return ""
     shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
     return f" Known: {shown}."
+
+
+def wrong_type(given: object, expected: str) -> TypeError:
+    """Of an argument that is none of what may be given: one sentence that says what it is and what was expected."""
+    kind = type(given).__name__
+    article = "an" if kind[:1].lower() in "aeiou" or kind == "ndarray" else "a"
+    shown = "None" if given is None else f"{article} {kind}"
+    return TypeError(f"got {shown}, expected {expected}.")

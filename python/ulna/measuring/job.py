@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,22 +12,34 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
-from ulna.arm.covariance_file import noise_of_result
-from ulna.arm.file import WHAT
+from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
-from ulna.formats.table import count_rows, read_header, stream
-from ulna.formats.toml import check_format, read_json
+from ulna.formats.table import count_rows, named_header, read_header, stream
+from ulna.formats.tables.coming import ComingTable
 from ulna.formats.units import MM_PER
-from ulna.ground.arrays import F64, Progress
+from ulna.ground.arrays import F64, I64, Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
-from ulna.measuring.tip_uncertainty import BESIDE, DIAGONAL, TipUncertainty
+from ulna.measuring.tip_uncertainty import COVARIANCE, DIAGONAL, TipUncertainty
+from ulna.measuring.units import rad_per
 from ulna.study.readings.checks import Outside, check_scale
 from ulna.study.readings.columns import check_columns, known_columns
 from ulna.study.readings.conditions import check_values, columns_of
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Readings of N poses, all of them."""
+
+    q_rad: F64
+    """(N, n)"""
+    probe: I64
+    """(N,) index into the arm's probes."""
+    conditions: Conditions
+    texts: dict[str, pl.Series]
+    """`id` and `probe`, where the table has them."""
 
 
 class MeasureJob:
@@ -35,8 +47,8 @@ class MeasureJob:
 
     def __init__(
         self,
-        arm: Arm | str | Path,
-        readings: Path,
+        arm: ArmLike,
+        readings: Path | Header,
         probe: str | None = None,
         angle: str = "rad",
         units: str = "mm",
@@ -44,22 +56,27 @@ class MeasureJob:
         layout: Layout = AS_EXPECTED,
         temperature_c: float | None = None,
         covariance: bool = False,
+        unused: Collection[str] = (),
     ) -> None:
-        """Raises UlnaInputError for whatever is wrong before the first row."""
-        if isinstance(arm, Arm):
-            self.arm = arm
-        else:
-            self.arm, stated_rad = load_arm_and_noise(Path(arm))
-            encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        """readings: a file, or a table that is open already; unused: its own names of columns of which nothing is said.
+        Raises UlnaInputError for whatever is wrong before the first row."""
+        self.arm, stated_rad = arm_and_noise(arm)
+        encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
-        self.header: Header = read_header(readings, WHAT_READINGS, layout, known_columns(self.arm.n, False))
+        known = known_columns(self.arm.n, False)
+        self.header: Header = (
+            named_header(readings, layout, known)
+            if isinstance(readings, Header)
+            else read_header(readings, WHAT_READINGS, layout, known)
+        )
         self._angle = angle
-        self._rad_per = self._angle_factors(angle)
+        self._rad_per = rad_per(self.arm, angle)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
-        check_columns(self.header, self.arm.n, self.arm.name, remarks)
+        asked = [column for column in map(self.header.find, unused) if column is not None]
+        check_columns(self.header, self.arm.n, self.arm.name, remarks, asked=asked)
         self._given = {"temperature_c": temperature_c}
         self._columns = self._needed(remarks)
         self._numbers = [*self._q, *(column for columns in self._columns.values() for column in columns)]
@@ -75,8 +92,9 @@ class MeasureJob:
             self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
         elif covariance:
             raise UlnaInputError(
-                f"{arm if not isinstance(arm, Arm) else arm.name}: no uncertainty is known of this arm, so its points "
-                "have no covariance; expected the result.json of a calibration. Name it, or leave --covariance out."
+                f"{arm if isinstance(arm, str | Path) else self.arm.name}: no uncertainty is known of this arm, so its "
+                "points have no covariance; expected the result.json of a calibration. Name it, or leave --covariance "
+                "out."
             )
         self._outside = Outside(self.arm, "q")
         self.rows = 0
@@ -85,8 +103,13 @@ class MeasureJob:
     def columns(self) -> list[str]:
         """Of the output."""
         u = [] if self._uncertainty is None else ["u_x", "u_y", "u_z"]
-        beside = ["c_xy", "c_xz", "c_yz"] if self._covariance else []
-        return [*self._texts, "x", "y", "z", *u, *beside]
+        matrix = list(COVARIANCE) if self._covariance else []
+        return [*self._texts, "x", "y", "z", *u, *matrix]
+
+    @property
+    def coming(self) -> bool:
+        """Whether the readings come as they are made, so that none can be read twice."""
+        return isinstance(self.header, ComingTable)
 
     def check(self) -> None:
         """Read all readings once without measuring. Raises UlnaInputError for the first bad cell: for outputs that
@@ -107,8 +130,25 @@ class MeasureJob:
                 progress("measure", self.rows, total)
         if not self.rows:
             raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_of_limits()
+
+    def whole(self) -> Whole:
+        """All readings at once. Raises UlnaInputError; warns as `frames`."""
+        pieces = list(self._pieces())
+        parts = [(self._angles(each), self._probes(each), self._conditions(each)) for each in pieces]
+        if not parts:
+            raise UlnaInputError(f"{self.header.path}: the table has no rows; expected a reading in each.")
+        self._warn_of_limits()
+        probe = np.concatenate([np.broadcast_to(np.asarray(own, dtype=np.int64), len(q)) for q, own, _ in parts])
+        conditions = Conditions()
+        for key in parts[0][2]:
+            conditions[key] = np.concatenate([said[key] for _, _, said in parts])  # type: ignore[literal-required]
+        texts: dict[str, pl.Series] = {name: pl.concat([each.texts[name] for each in pieces]) for name in self._texts}
+        return Whole(np.concatenate([q for q, _, _ in parts]), probe, conditions, texts)
+
+    def _warn_of_limits(self) -> None:
         for remark in self._outside.remarks(self.header.path):
-            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=2)
+            warnings.warn(f"{remark} They are measured all the same.", InputWarning, stacklevel=3)
 
     @property
     def notes(self) -> list[str]:
@@ -132,7 +172,7 @@ class MeasureJob:
                 c_mm2[rows] = self._uncertainty.covariance(np.ascontiguousarray(q_rad[rows]), int(k), at)
             values.append(np.sqrt(np.maximum(c_mm2[:, DIAGONAL], 0.0)) / MM_PER[self.unit])
             if self._covariance:
-                values.append(c_mm2[:, BESIDE] / MM_PER[self.unit] ** 2)
+                values.append(c_mm2 / MM_PER[self.unit] ** 2)
         numbers = np.concatenate(values, axis=1)
         columns = dict(piece.texts)
         for k, name in enumerate(self.columns[len(self._texts) :]):
@@ -206,31 +246,3 @@ class MeasureJob:
             self.arm.probe_index(probe)
             remarks.append(f"{self.header.path}: --probe {probe} is not used: the file has its own column 'probe'.")
         return None
-
-    def _angle_factors(self, angle: str) -> F64:
-        if angle == "rad":
-            return np.ones(self.arm.n)
-        if angle == "deg":
-            return np.full(self.arm.n, math.pi / 180.0)
-        if angle != "counts":
-            raise UlnaInputError(
-                f"measure: angle '{angle}'; expected rad, deg or counts.{nearest(angle, ('rad', 'deg', 'counts'))}"
-            )
-        for k, joint in enumerate(self.arm.joints, start=1):
-            if joint.counts_per_turn is None:
-                raise UlnaInputError(
-                    f"arm '{self.arm.name}': key 'joint.{k}.counts_per_turn' is missing, which readings in counts "
-                    "need. Add it to the arm file."
-                )
-        return np.array([2.0 * math.pi / (joint.counts_per_turn or math.nan) for joint in self.arm.joints])
-
-
-def load_arm_and_noise(path: Path) -> tuple[Arm, F64 | None]:
-    """An arm from an arm file or a result; of a result also the encoders' standard deviations (n,) rad that its study
-    stated. Raises UlnaInputError."""
-    if path.suffix.lower() != ".json":
-        return Arm.load(path), None
-    document, _ = read_json(path, WHAT)
-    check_format(document, path, "ulna-result")
-    arm = Arm.of_result(document, path)
-    return arm, noise_of_result(document, arm, path)

@@ -17,8 +17,12 @@ from ulna.arm.directions import steps, worth_naming
 from ulna.ground.arrays import F64
 from ulna.work.cores import available_cores
 
-DIAGONAL, BESIDE = [0, 3, 5], [1, 2, 4]
-"""Of xx, xy, xz, yy, yz, zz."""
+COVARIANCE = ("c_xx", "c_xy", "c_xz", "c_yy", "c_yz", "c_zz")
+"""Columns of a point's covariance matrix, its upper triangle row by row."""
+DIAGONAL = [0, 3, 5]
+"""Of them."""
+WHOLE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
+"""Where the elements of the matrix stand among them."""
 
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""

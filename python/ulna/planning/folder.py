@@ -12,6 +12,7 @@ from ulna.arm.file import arm_toml
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.formats.output import output_folder
+from ulna.ground.extras import need
 from ulna.planning.data import PlanData, as_dict, steps
 from ulna.planning.measurements import readings_of
 from ulna.planning.planned import ARM, PLAN
@@ -19,6 +20,7 @@ from ulna.simulation.study_files import features_file, features_table, study_tom
 from ulna.study.data import FitOptions, Noise
 from ulna.study.study import Study
 
+NEEDS_PICTURES = "the pictures of a plan"
 STUDY, TABLE = "study.toml", "plan.csv"
 PICTURES = ("places.svg", "places.png", "curve.svg", "curve.png", "arm.svg")
 
@@ -31,6 +33,7 @@ def files_of(artefact: Artefact) -> list[str]:
 
 def save(plan: PlanData, folder: Path, force: bool = False, more: Mapping[str, bytes] | None = None) -> None:
     """Write all of `files_of` and some more, whole or not at all. Raises UlnaInputError."""
+    need(NEEDS_PICTURES, "matplotlib")
     from ulna.planning import standing_arm
     from ulna.planning.plots import draw_curve, draw_places
 

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.given import ArmLike, as_arm
 from ulna.ground.arrays import F64, I64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.planning.candidates import EACH, ON_SURFACE, POSTURES, Candidates, combine
+from ulna.planning.file import load_plan_spec
 from ulna.planning.information import Coordinates, candidate_rows, observability, taken_rows
 from ulna.planning.order import in_order
 from ulna.planning.outcome import Plan
@@ -51,19 +53,22 @@ class _Asked:
 
 
 def plan(
-    arm: Arm,
-    spec: PlanSpec,
+    arm: ArmLike,
+    spec: PlanSpec | str | Path,
     progress: Progress | None = None,
     *,
     workers: Workers | None = None,
     keep: str | Path | None = None,
 ) -> Plan:
-    """Choose measurements that make the spec's criterion small, and judge them beside random ones.
+    """Choose measurements that make the spec's criterion small, and judge them beside random ones. `arm`: an arm, a
+    result, or a path of one; `spec`: a specification, or the path of a plan file.
 
     `progress` is called with (stage, done, total). workers: who draws candidates and does the trial's calibrations
     (None: this process's threads); the choice itself is made here. keep: folder for the trial's finished pieces, from
     which the same plan goes on. Raises UlnaInputError for what cannot be asked; KeyboardInterrupt.
     """
+    arm = as_arm(arm)
+    spec = spec if isinstance(spec, PlanSpec) else load_plan_spec(Path(spec), arm)
     check(arm, spec)
     team = workers or Threads()
     told = progress if progress is not None else lambda *_: None

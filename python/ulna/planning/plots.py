@@ -62,8 +62,8 @@ def draw_stands(
     labels = places_of_numbers([points for number, points in lines if number in own], size)
     for stand, (x, y) in zip(shown, labels, strict=True):
         axes.text(
-            x, y, str(stand.number), ha="center", va="center", fontsize=9, fontweight="bold", fontfamily="DejaVu Sans",
-            color="black", zorder=6, path_effects=halo,
+            x, y, str(stand.number), ha="center", va="center", fontsize=9, fontweight="bold",
+            fontfamily="DejaVu Sans", color="black", zorder=6, path_effects=halo,
         )  # fmt: skip
     axes.annotate(
         base, (0, 0), xytext=(0, -13), textcoords="offset points", color=VERMILION, fontsize=9, ha="center", zorder=5,

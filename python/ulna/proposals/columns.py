@@ -9,6 +9,7 @@ import polars as pl
 
 from ulna.formats.header import Header
 from ulna.proposals.words import Meaning, meaning
+from ulna.study.data import Taken as Taken
 
 #: a column holds numbers where at least this share of its filled cells does
 _NUMBERS = 0.8
@@ -50,16 +51,6 @@ class Column:
     def down(self) -> pl.Series:
         """The texts with empty cells filled from above."""
         return self.texts.replace("", None).forward_fill().fill_null("")
-
-
-@dataclass(frozen=True)
-class Taken:
-    """What a column is taken for."""
-
-    column: str
-    ours: str
-    """Ulna's name; "" where it is not used."""
-    why: str
 
 
 def columns_of(header: Header) -> list[Column]:

@@ -103,7 +103,7 @@ def propose(answers: Answers) -> Proposal:
         questions.append(counts_question(angles))
     if isinstance(what, list):
         raise UnansweredError(str(path), questions)
-    labels = _labels(path, answers, columns, angles, what, layout)
+    labels = labels_of(path, answers, columns, angles, what, layout)
     questions += labels.questions
     bad = conditions_on_cells(header, angles, answers)
     questions += [bad] if isinstance(bad, Question) else []
@@ -114,15 +114,16 @@ def propose(answers: Answers) -> Proposal:
     probes = probe_names(columns, labels, drawn, path, dict(layout.names))
     arm, search = as_asked(drawn, answers, probes)
     taken = {each.column: each for each in [*labels.taken, *angles.taken]}
-    entry = _entry(answers, seen, unit[0], list(taken.values()), labels, dict(layout.names), bad)
+    entry = entry_of(answers, seen, unit[0], list(taken.values()), labels, dict(layout.names), bad)
     remarks = [*drawn.remarks, *what.remarks]  # of the readings: whoever loads the study is told
     order = [taken[column.name] for column in columns]
     return Proposal(path, arm, drawn, search, what, *unit, order, entry, remarks, len(columns[0].texts))
 
 
-def _labels(
+def labels_of(
     path: Path, answers: Answers, columns: Sequence[Column], angles: Angles, what: Stated, layout: Layout
 ) -> Labels:
+    """What the columns beside the angles hold. Raises UlnaInputError."""
     found = Labels()
     used = {column.name for column in angles.columns}
     rest = [column for column in columns if column.name not in used]
@@ -151,7 +152,7 @@ def _labels(
     return found
 
 
-def _entry(
+def entry_of(
     answers: Answers,
     seen: dict[str, str],
     angle: str,

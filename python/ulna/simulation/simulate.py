@@ -17,6 +17,7 @@ from ulna.artefacts.touching import Touches
 from ulna.formats.output import output_folder, refuse_inputs
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown
 from ulna.simulation.account import account
 from ulna.simulation.mover import Mover
 from ulna.simulation.reading_errors import ReadingErrors, as_drawn
@@ -26,11 +27,12 @@ from ulna.simulation.study_files import names_for, texts, write_tables
 from ulna.simulation.touches import probes_of, touches_of
 from ulna.simulation.truth import TrueTouching, Truth
 from ulna.study.data import Noise
+from ulna.study.given import StandsForStudy
 from ulna.study.study import Study
 
 
-@dataclass(frozen=True)
-class Simulated:
+@dataclass(frozen=True, repr=False)
+class Simulated(Shown, StandsForStudy):
     """A study, and the truth behind it."""
 
     simulation: Simulation
@@ -41,6 +43,20 @@ class Simulated:
     def as_dict(self) -> dict[str, Any]:
         """`truth.json`: JSON types only, no NaN."""
         return account(self.simulation, self.study, self.truth)
+
+    def its_study(self) -> Study:
+        """The study."""
+        return self.study
+
+    def about(self) -> About:
+        """The study; the truth is in `.truth`."""
+        found = self.study.about()
+        return About(
+            f"Simulated: {found.title[0].lower()}{found.title[1:]}, seed {self.simulation.seed}",
+            found.facts,
+            found.tables,
+            found.notes,
+        )
 
     @property
     def files(self) -> list[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, Self
+from typing import Literal, NamedTuple, Self
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.readings import InputFile, Readings
@@ -89,6 +89,15 @@ class FitOptions:
     them (chi² per degree of freedom up to 3) and they are more than a thousandth of the reach."""
 
 
+class Taken(NamedTuple):
+    """What a column of a table that somebody keeps is taken for."""
+
+    column: str
+    ours: str
+    """Ulna's name; "" where it is not used."""
+    why: str
+
+
 @dataclass
 class StudyData:
     """What to fit to what, without its files: see `ulna.study.study.Study`."""
@@ -104,6 +113,9 @@ class StudyData:
     """Remarks made while reading; also issued as InputWarning."""
     rows: Literal["fit", "check", "all"] | None = None
     """Which rows these are, where the study keeps some to check the fit; None where it does not."""
+
+    taken: list[Taken] = field(default_factory=list)
+    """What each column was taken for, where that was guessed."""
 
     @property
     def label(self) -> str:

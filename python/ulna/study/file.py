@@ -10,7 +10,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
-from ulna.artefacts.kinds import check_kinds, kind_of, made
+from ulna.artefacts.kinds import check_kinds, made
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.artefacts.tables import Place
 from ulna.formats.models import fill
@@ -21,10 +21,8 @@ from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.study.data import FitOptions, Noise, Prior, StudyData
 from ulna.study.options import with_options
 from ulna.study.parameters import check_patterns
-from ulna.study.readings.checks import check_limits, check_repeats
 from ulna.study.readings.columns import Source
-from ulna.study.readings.merge import merge
-from ulna.study.readings.own_points import has_own_points
+from ulna.study.readings.gathered import gathered
 from ulna.study.readings.readings import read_readings
 from ulna.study.tables import FitTable, NoiseTable, PriorTable, StudyFile
 
@@ -63,10 +61,15 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     return study
 
 
+def study_file(path: Path) -> StudyFile:
+    """The file alone, nothing that it names. Raises UlnaInputError."""
+    return fill(StudyFile, _document(path)[0], path)
+
+
 def rows_to_judge(path: Path) -> Rows:
     """The rows with which an arm is judged where nobody says otherwise: those to check where the study has a split,
     else all. Raises UlnaInputError."""
-    file = fill(StudyFile, _document(path)[0], path)
+    file = study_file(path)
     return "check" if any(entry.split is not None for entry in file.readings) else "all"
 
 
@@ -108,15 +111,7 @@ def _readings(
         read, used = read_readings(source, arm, artefacts, file.units, remarks, rows)
         files.append(used)
         parts += read
-    groups = merge(parts, artefacts, files, path)
-    for name in artefacts:
-        if rows != "check" and all(group.artefact.name != name for group in groups):
-            remarks.append(f"{path}: key 'artefact.{name}': no reading touches this artefact.")
-    for group in groups:
-        kind_of(group.artefact).check_readings(group, files, path)
-        check_repeats(group, files, remarks, own_points=has_own_points(artefacts[group.artefact.name]))
-        check_limits(group, arm, files, remarks)
-    return groups
+    return gathered(parts, path, arm, artefacts, files, remarks, rows)
 
 
 def noise_of_table(table: NoiseTable | None, units: Units, arm: Arm, path: Path) -> Noise | None:

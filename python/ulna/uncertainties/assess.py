@@ -15,7 +15,9 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.directions import worth_naming
 from ulna.calibration.recalibrations import recalibrated
 from ulna.ground.arrays import F64, Progress
+from ulna.ground.digits import uncertainty as digits
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.shown import About, Shown, Table
 from ulna.ground.version import VERSION
 from ulna.study.study import Study
 from ulna.uncertainties.constrained import Constrained, Shares
@@ -59,8 +61,8 @@ class Value:
     """Directions that the calibration left open, and on which this value depends."""
 
 
-@dataclass(frozen=True)
-class Assessment:
+@dataclass(frozen=True, repr=False)
+class Assessment(Shown):
     """What is known of a measurement."""
 
     kind: str
@@ -80,6 +82,22 @@ class Assessment:
     left_out: list[str]
     seed: int
     most_trials: int
+
+    def about(self) -> About:
+        """Each value with what it is made of."""
+        rows = [
+            [each.name, each.unit, f"{each.value:.6g}", *map(digits, (each.u, each.expanded))] for each in self.values
+        ]
+        budget = [[each.name, source, digits(u)] for each in self.values for source, u in each.budget.items()]
+        return About(
+            f"Assessment of a {self.kind}, {self.readings} readings, probe '{self.probe}'",
+            {},
+            [
+                Table(["value", "unit", "", "u", f"U (p = {100 * self.p:g} %)"], rows, texts=2),
+                Table(["of", "source", "u"], budget, "Budget", texts=2),
+            ],
+            [not_determined(each) for each in self.values if each.not_determined],
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """`uncertainty.json`: JSON types only, no NaN."""

@@ -9,9 +9,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
 
 from ulna.ground.arrays import F64
+from ulna.ground.quantiles import normal, student
 
 STEP = 1e-3
 """Step of `numerical_jacobian` as a fraction of u. The error of central differences falls with its square: where y
@@ -65,4 +65,4 @@ def coverage_factor(p: float, degrees_of_freedom: float = math.inf) -> float:
     ν that are no whole number are taken as they are where the GUM (G.4.1) truncates or interpolates.
     """
     upper = 0.5 * (1.0 + p)
-    return float(ndtri(upper) if math.isinf(degrees_of_freedom) else stdtrit(degrees_of_freedom, upper))
+    return normal(upper) if math.isinf(degrees_of_freedom) else float(student(degrees_of_freedom, upper))

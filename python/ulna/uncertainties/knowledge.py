@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,10 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.covariance_file import noise_of_result, seat_of_result
+from ulna.arm.file import result_file
+from ulna.arm.given import ArmLike, as_arm
+from ulna.calibration.given import ResultLike, as_result
+from ulna.calibration.result import Result
 from ulna.formats.toml import check_format, read_json
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
@@ -61,9 +66,11 @@ class Known:
         return encoder_rad, self.seat_mm if stated.seat_mm is None else stated.seat_mm
 
 
-def known_of_result(result: Path) -> Known:
-    """From a result.json, or the folder of one. Raises UlnaInputError."""
-    result = result / "result.json" if result.is_dir() else result
+def known_of_result(given: ResultLike) -> Known:
+    """From a result, a result.json, or the folder of one. Raises UlnaInputError."""
+    if not isinstance(given, str | os.PathLike):
+        return _known_in_memory(as_result(given))
+    result = result_file(Path(given))
     document, _ = read_json(result, WHAT)
     check_format(document, result, "ulna-result")
     arm = Arm.of_result(document, result)
@@ -77,12 +84,28 @@ def known_of_result(result: Path) -> Known:
     )
 
 
+def _known_in_memory(result: Result) -> Known:
+    made = result.provenance
+    return Known(
+        arm=result.arm,
+        encoder_rad=result.encoder_u_rad,
+        seat_mm=seat_of_result({"provenance": made}, Path(label_of(result))),
+        degrees_of_freedom=math.inf if made.get("noise") else float(result.fit.degrees_of_freedom),
+        made=made,
+    )
+
+
+def label_of(result: ArmLike) -> str:
+    """How messages call a result, or an arm: by its path, or by its arm's name."""
+    return str(result) if isinstance(result, str | os.PathLike) else f"arm '{as_arm(result).name}'"
+
+
 def known_of_performance(
-    arm_file: Path, performance: Path, seed: int = 0, workers: Workers | None = None, progress: Progress | None = None
+    given: ArmLike, performance: Path, seed: int = 0, workers: Workers | None = None, progress: Progress | None = None
 ) -> Known:
-    """From an arm.toml and a performance file: what a certificate's figures say of the arm. Raises UlnaInputError;
+    """From an arm and a performance file: what a certificate's figures say of the arm. Raises UlnaInputError;
     KeyboardInterrupt."""
-    arm = Arm.load(arm_file)
+    arm = as_arm(given)
     stated = read_performance(performance, arm)
     travel_rad = travel_or_limits(arm, stated.travel_rad, str(performance))
     arms = Constrained(arm, stated.performance, travel_rad, seed, workers, progress)

@@ -1,8 +1,7 @@
-"""The picture of a volume map, as SVG and PNG; and its files."""
+"""The picture of a volume map, as SVG and PNG."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,23 +10,12 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ulna.formats.output import output_folder
 from ulna.ground.style import BLUE, GREY, STYLE, VERMILION, save_picture
 from ulna.uncertainties.volume import Somewhere, VolumeMap
-from ulna.uncertainties.zones import CELLS, as_dict, by_length, cells
+from ulna.uncertainties.zones import CELLS, by_length, cells
 
-FILES = ["volume.json", "volume.csv", "volume.svg", "volume.png"]
 COLOURS = "cividis"
 """Made for readers who tell colours apart less well."""
-
-
-def save_volume(found: VolumeMap, folder: Path, force: bool = False) -> None:
-    """Write FILES, whole or not at all. Raises UlnaInputError."""
-    with output_folder(folder, FILES, force) as staging:
-        text = json.dumps(as_dict(found), indent=1, ensure_ascii=False, allow_nan=False)
-        (staging / "volume.json").write_text(text + "\n", encoding="utf-8")
-        cells(found).write_csv(staging / "volume.csv")
-        draw_volume(found, staging)
 
 
 def draw_volume(found: VolumeMap, folder: Path) -> None:

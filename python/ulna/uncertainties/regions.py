@@ -5,12 +5,13 @@ In the units of y. The distribution of y is taken as normal.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri
 
 from ulna.ground.arrays import F64, Bool
+from ulna.ground.quantiles import chi_squared
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Ellipsoid:
 
 def coverage_factor_of_region(p: float, m: int) -> float:
     """k_p of m normal coordinates: the root of the p-quantile of χ² with m degrees of freedom (JCGM 102 6.5)."""
-    return float(np.sqrt(chdtri(m, 1.0 - p)))
+    return math.sqrt(chi_squared(m, p))
 
 
 def ellipsoid(y: F64, covariance: F64, p: float = 0.95) -> Ellipsoid:

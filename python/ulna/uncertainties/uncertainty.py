@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.given import ArmLike
+from ulna.calibration.given import ResultLike
 from ulna.calibration.recalibrations import job_of
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.simulation.mover import travel_or_limits
+from ulna.study.given import StudyLike, as_study
 from ulna.study.study import Study
 from ulna.uncertainties.assess import Assessment, assess
-from ulna.uncertainties.knowledge import Known, known_of_performance, known_of_result
+from ulna.uncertainties.knowledge import Known, known_of_performance, known_of_result, label_of
 from ulna.uncertainties.measurands import MEASURANDS, Touched
 from ulna.uncertainties.task import Task
 from ulna.uncertainties.task_file import read_task
@@ -26,10 +29,10 @@ from ulna.work.pieces import Workers
 
 
 def uncertainty(
-    result: str | Path,
+    result: ResultLike | ArmLike,
     task: str | Path,
     *,
-    study: Study | None = None,
+    study: StudyLike | None = None,
     performance: str | Path | None = None,
     seed: int = 0,
     most_trials: int = 1_000_000,
@@ -37,15 +40,16 @@ def uncertainty(
     keep: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
-    """How sure a measurement is: of a calibrated arm (`result.json`, or the folder of one) and a task file.
+    """How sure a measurement is: of a calibrated arm (a result, a `result.json`, or the folder of one) and a task file.
 
-    performance: a performance file, where the calibration is not at hand; then `result` is an arm.toml.
+    performance: a performance file, where the calibration is not at hand; then `result` is an arm, or an arm.toml.
 
     study: the study of that calibration, to repeat whole calibrations on new noise; else parameters are drawn from the
     result's covariance. most_trials: of the Monte Carlo calculation; 0: first order alone. keep: folder for finished
     calibrations, from which the same question goes on. Raises UlnaInputError; KeyboardInterrupt.
     """
-    result, task = Path(result), Path(task)
+    task, label = Path(task), label_of(result)
+    study = None if study is None else as_study(study)
     if performance is not None and study is not None:
         raise UlnaInputError(
             f"{performance}: stands for a calibration that is not at hand, but {study.label} is one; expected one of "
@@ -55,7 +59,7 @@ def uncertainty(
     arm = known.arm
     ledger = None
     if study is not None:
-        check_same(study, known.made, result)
+        check_same(study, known.made, label)
         if keep is not None:
             ledger = Ledger(Path(keep), job_of(study, arm, most_trials, seed))
     elif keep is not None:
@@ -101,7 +105,7 @@ def uncertainty(
 
 
 def volume_uncertainty(
-    result: str | Path,
+    result: ResultLike | ArmLike,
     task: str | Path,
     *,
     performance: str | Path | None = None,
@@ -109,9 +113,9 @@ def volume_uncertainty(
     workers: Workers | None = None,
     progress: Progress | None = None,
 ) -> VolumeMap:
-    """How sure points and lengths are all over the volume: of a calibrated arm (`result.json`, or the folder of one)
-    and a volume file; performance as for `uncertainty`. Raises UlnaInputError; KeyboardInterrupt."""
-    known = _known(Path(result), performance, seed, workers, progress)
+    """How sure points and lengths are all over the volume: of a calibrated arm (a result, a `result.json`, or the
+    folder of one) and a volume file; performance as for `uncertainty`. Raises UlnaInputError; KeyboardInterrupt."""
+    known = _known(result, performance, seed, workers, progress)
     stated = read_volume(Path(task), known.arm)
     known.check_probe(stated.probe, str(task))
     encoder_rad, seat_mm = known.noise(stated.noise)
@@ -135,14 +139,18 @@ def volume_uncertainty(
 
 
 def _known(
-    result: Path, performance: str | Path | None, seed: int, workers: Workers | None, progress: Progress | None
+    result: ResultLike | ArmLike,
+    performance: str | Path | None,
+    seed: int,
+    workers: Workers | None,
+    progress: Progress | None,
 ) -> Known:
     if performance is None:
-        return known_of_result(result)
+        return known_of_result(result)  # type: ignore[arg-type]  # an arm alone is refused there
     return known_of_performance(result, Path(performance), seed, workers, progress)
 
 
-def check_same(study: Study, made: dict[str, Any], result: Path) -> None:
+def check_same(study: Study, made: dict[str, Any], result: Path | str) -> None:
     """Raises UlnaInputError where the result was not made from this study."""
     theirs = [file.get("sha256") for file in made.get("files", [])]
     if theirs != [file.sha256 for file in study.files]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE
@@ -15,6 +14,8 @@ from ulna.arm.directions import drawn, steps
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.quantiles import normal, student
+from ulna.ground.shown import About, Shown, Table
 from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
@@ -67,8 +68,8 @@ class Somewhere:
     """(N,) u times its own coverage factor; of a point NaN, for a position has no single k."""
 
 
-@dataclass(frozen=True)
-class VolumeMap:
+@dataclass(frozen=True, repr=False)
+class VolumeMap(Shown):
     """What was found."""
 
     arm: str
@@ -82,6 +83,18 @@ class VolumeMap:
     not_determined: list[dict[str, Any]]
     """Directions that the calibration left open, and on which some of it depends."""
     left_out: list[str]
+
+    def about(self) -> About:
+        """Middle and largest of points and of each length."""
+        named = {"points, u": self.points.u_mm}
+        named |= {f"lengths of {length:g} mm, U": found.expanded_mm for length, found in self.lengths.items()}
+        rows = []
+        for name, values in named.items():
+            known = values[np.isfinite(values)]
+            shown = [1000.0 * float(np.median(known)), 1000.0 * float(known.max())] if len(known) else []
+            rows.append([name, *([f"{value:.3g}" for value in shown] or ["–", "–"]), str(len(values) - len(known))])
+        title = f"Uncertainty all over the volume of '{self.arm}', probe '{self.probe}', reach {self.reach_mm:.0f} mm"
+        return About(title, {}, [Table(["", "median / µm", "largest / µm", "not determined"], rows)], self.left_out)
 
     @property
     def whole(self) -> bool:
@@ -236,8 +249,10 @@ class Account:
         """(M,) coverage factors: Student's where the calibration estimated its noise (GUM G.4.1), else normal."""
         upper = 0.5 * (1.0 + self._task.p)
         if math.isinf(self._task.degrees_of_freedom):
-            return np.full(len(variance), float(ndtri(upper)))
+            return np.full(len(variance), normal(upper))
         with np.errstate(divide="ignore", invalid="ignore"):
             effective = self._task.degrees_of_freedom * (variance / parameters) ** 2
-        k: F64 = np.where(np.isfinite(effective), stdtrit(effective, upper), float(ndtri(upper)))
+        k: F64 = np.full(len(variance), normal(upper))
+        some = np.isfinite(effective)
+        k[some] = student(effective[some], upper)
         return k

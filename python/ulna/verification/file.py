@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ulna.arm.arm import Arm
+from ulna.arm.file import arm_toml, result_file
+from ulna.arm.given import ArmLike, as_arm
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
+from ulna.formats.toml import sha256 as digest
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.verification.bench import Bench
 from ulna.verification.budget import Surroundings
@@ -31,8 +35,17 @@ class StatedArm:
     @classmethod
     def load(cls, path: Path) -> StatedArm:
         """From an arm file or a result. Raises UlnaInputError."""
+        path = result_file(path)
         arm, sha256 = Arm.load_and_hash(path)
         return cls(arm, path, sha256)
+
+    @classmethod
+    def of(cls, given: ArmLike) -> StatedArm:
+        """However it is given; one in memory is known by what its arm file would say. Raises UlnaInputError."""
+        if isinstance(given, str | os.PathLike):
+            return cls.load(Path(given))
+        arm = as_arm(given)
+        return cls(arm, Path(f"arm '{arm.name}'"), digest(arm_toml(arm).encode()))
 
 
 @dataclass(frozen=True)
@@ -62,7 +75,7 @@ class VerifyPlan:
         return Bench(self.path, self.file.artefact, mm, surroundings, range_mm)
 
 
-def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
+def load_verify(path: Path, given: ArmLike | None = None) -> VerifyPlan:
     """Read a verify file, its profile and its readings. Raises UlnaInputError."""
     document, sha256 = read_toml(path, WHAT)
     check_format(document, path, "ulna-verify")
@@ -70,8 +83,10 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
     file = fill(VerifyFile, document, path)
     profile = load_profile(file.profile, path.parent, f"{path}: key 'profile'")
     arms: dict[Path, StatedArm] = {}
-    if arm_path is not None:
-        arms[arm_path] = StatedArm.load(arm_path)
+    arm_path = None
+    if given is not None:
+        stated = StatedArm.of(given)
+        arm_path, arms[stated.path] = stated.path, stated
     remarks: list[str] = []
     temperature_c = None if file.temperature is None else file.temperature.value
     setting = Setting(path, file.units, None if file.ball is None else file.ball * file.units.mm, temperature_c)
@@ -81,13 +96,13 @@ def load_verify(path: Path, arm_path: Path | None = None) -> VerifyPlan:
         own = arm_path if entry.arm is None else path.parent / entry.arm
         if own is not None and own not in arms:
             arms[own] = StatedArm.load(own)
-        stated = None if own is None else arms[own]
+        reader = None if own is None else arms[own]
         touches = read_touches(
-            entry, number, setting, None if stated is None else stated.arm, None if stated is None else own, remarks
+            entry, number, setting, None if reader is None else reader.arm, None if reader is None else own, remarks
         )
-        if touches.source == "encoders" and stated is not None:
+        if touches.source == "encoders" and reader is not None:
             used.add(own)
-            touches = replace(touches, arm_sha256=stated.sha256)
+            touches = replace(touches, arm_sha256=reader.sha256)
         _check_labels(touches, file, profile, path)
         found.setdefault(entry.state, []).append(touches)
     remarks += [f"{each}: the arm is not used: its readings are coordinates." for each in arms if each not in used]

@@ -9,6 +9,7 @@ from typing import Any
 import polars as pl
 
 from ulna.arm.arm import Arm
+from ulna.arm.given import ArmLike, as_arm
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.verification.plan_files import EMPTY, PLAN, TOUCHES, Filled, plan_toml, touches_table
@@ -44,11 +45,12 @@ class TestPlan:
         return {str(name): count for name, count in self.table.group_by("test", maintain_order=True).len().iter_rows()}
 
 
-def make_test_plan(profile: str, arm: Arm | None = None, beside: Path = Path()) -> TestPlan:
+def make_test_plan(profile: str, arm: ArmLike | None = None, beside: Path = Path()) -> TestPlan:
     """What a profile (name or path) asks to be measured: as encoder readings of an arm, or as x, y, z of any arm.
 
     Raises UlnaInputError for a profile that cannot be used.
     """
+    arm = None if arm is None else as_arm(arm)
     found = load_profile(profile, beside, "option --make-plan")
     names = ["x", "y", "z"] if arm is None else [f"q{k + 1}" for k in range(arm.n)]
     table = touches_table(found, {}).with_columns(pl.lit(None, dtype=pl.Float64).alias(name) for name in names)
@@ -62,7 +64,7 @@ def _of_arm(arm: Arm) -> Filled:
 
 def play_test_plan(
     profile: str,
-    truth: Arm,
+    truth: ArmLike,
     encoder_rad: float = 5e-6,
     touch_mm: float = 0.005,
     seed: int = 0,
@@ -74,6 +76,7 @@ def play_test_plan(
     encoder_rad and touch_mm: standard deviations. Artefacts, limits and temperature are examples. Raises
     UlnaInputError.
     """
+    truth = as_arm(truth)
     found = load_profile(profile, beside, "option --make-plan")
     played = play(found, truth, encoder_rad, touch_mm, seed, progress)
     columns: dict[str, Any] = {f"q{k + 1}": played.q_rad[:, k] for k in range(truth.n)}

@@ -8,10 +8,13 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from ulna.arm.given import ArmLike
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
+from ulna.ground.extras import need
+from ulna.ground.shown import About, Shown, Table
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
@@ -27,8 +30,8 @@ TABLE = "values.csv"
 PICTURES = ("lengths.svg", "lengths.png")
 
 
-@dataclass(frozen=True)
-class Verification:
+@dataclass(frozen=True, repr=False)
+class Verification(Shown):
     """What an acceptance test found."""
 
     plan: VerifyPlan
@@ -55,6 +58,25 @@ class Verification:
             return named
         return self.plan.arms[0].arm.name if self.plan.arms else "not named"
 
+    def about(self) -> About:
+        """Each figure in each state, with its limit and verdict."""
+        rows = [
+            [
+                state.state,
+                figure.definition.key,
+                figure.verdict or "no limit",
+                f"{1000.0 * figure.worst.single.value_mm:.1f}",
+                "–" if figure.worst.limit_mm is None else f"{1000.0 * figure.worst.limit_mm:.1f}",
+            ]
+            for state in self.states
+            for figure in state.figures.values()
+        ]
+        return About(
+            f"Verification of '{self.arm}' after {self.plan.profile.file.name}: {self.verdict or 'no limit stated'}",
+            {},
+            [Table(["state", "figure", "verdict", "worst / µm", "limit / µm"], rows, texts=3)],
+        )
+
     def file(self) -> VerificationFile:
         """`verification.json`, lengths in mm."""
         return verification_file(self.plan, self.arm, self.rule, self.states, self.verdict, self.time)
@@ -66,14 +88,18 @@ class Verification:
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write verification.json, values.csv and, where lengths were measured, lengths.svg and .png. Raises
         UlnaInputError."""
-        from ulna.verification.plots import draw_lengths
         from ulna.verification.values_table import values_table
+
+        if len(self.files) > 2:
+            need("the picture of lengths in the results", "matplotlib")
 
         with output_folder(folder, self.files, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / FILE).write_text(text + "\n", encoding="utf-8")
             values_table(self.states).write_csv(staging / TABLE)
             if len(self.files) > 2:
+                from ulna.verification.plots import draw_lengths
+
                 draw_lengths(self.states, staging)
 
     @property
@@ -92,14 +118,14 @@ def lengths_of(state: StateResult) -> list[Judged]:
     return [judged for test in state.tests if kind_of(test.kind).length_errors for judged in test.figures[0].values]
 
 
-def verify(plan: str | Path, arm: str | Path | None = None, progress: Progress | None = None) -> Verification:
-    """An acceptance test: `plan` a verify file; `arm` an arm file or a result, for encoder readings.
+def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | None = None) -> Verification:
+    """An acceptance test: `plan` a verify file; `arm`, for encoder readings, an arm, a result, or a path of one.
 
     Raises UlnaInputError for whatever cannot be used. Warns with InputWarning of what is used with a remark.
     """
     import warnings
 
-    stated = load_verify(Path(plan), None if arm is None else Path(arm))
+    stated = load_verify(Path(plan), arm)
     for remark in stated.warnings:
         warnings.warn(remark, InputWarning, stacklevel=2)
     rule = DecisionRule.of(stated.profile.file.decision, stated.file.rule)

@@ -17,7 +17,7 @@ from ulna.cli.printed.identification import determined_in_words, directions
 from ulna.cli.printed.outliers import far_off
 from ulna.cli.printed.scale import common_factor
 from ulna.cli.printed.tables import table
-from ulna.ground.digits import decimals, figure_mm, fixed, quantity, uncertainty
+from ulna.ground.digits import decimals, figure_mm, fixed, plain_uncertainty, quantity, uncertainty
 
 _ENDINGS = {
     "converged-cost": "Converged: the sum of squares no longer falls",
@@ -34,13 +34,15 @@ _METHODS = {"annealing": "simulated annealing", "evolution": "an evolutionary se
 
 
 def calibration_report(result: Result) -> list[RenderableType]:
-    """All of `ulna calibrate`."""
+    """All of `ulna calibrate`, as `--all` prints it."""
     parts: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
     parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
     parts += [Text(said) for said in filter(None, [common_factor(result)])]
     rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
-    parts += ["", before_after("Before and after, on the fitted readings", result.before, result.after, [rms])]
-    parts += ["", *parameter_tables(result.parameters)]
+    title, without = "Before and after, on the fitted readings", result.without_far_off
+    table = before_after(title, result.before, result.after, [rms], without, len(result.outliers))
+    parts += ["", table]
+    parts += ["", *parameter_tables(result.parameters), *signs_found(result.fit)]
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
@@ -110,27 +112,41 @@ def equations(fit: FitSummary) -> str:
     )
 
 
-def parameter_tables(parameters: Sequence[Parameter]) -> list[RenderableType]:
+def parameter_tables(parameters: Sequence[Parameter], with_start: bool = True) -> list[RenderableType]:
     """Every parameter: start, value, standard uncertainty, that of its prior where there are any, unit, status.
 
     What is beyond the arm's geometry stands in a table of its own, which starts at zero or at a certificate's value.
     """
     beyond = [row for row in parameters if extra_of(row.name) or row.name.startswith("artefact.")]
     geometry = [row for row in parameters if row not in beyond]
-    tables: list[RenderableType] = [_parameter_table("Parameters (u: standard uncertainty)", geometry, True)]
+    tables: list[RenderableType] = [
+        _parameter_table("Parameters (u: standard uncertainty)", geometry, with_start, plain=True)
+    ]
     if beyond:
         tables += ["", _parameter_table("Beyond the arm's geometry", beyond, False)]
     return tables
 
 
-def _parameter_table(title: str, parameters: Sequence[Parameter], with_start: bool) -> RenderableType:
+def signs_found(fit: FitSummary) -> list[RenderableType]:
+    """Of joints whose sign nobody knew: one line below the parameters."""
+    if not fit.signs_found:
+        return []
+    said = ", ".join(f"{name} = {sign}" for name, sign in fit.signs_found.items())
+    return [Text(f"Signs found: {said}.")]
+
+
+def _parameter_table(
+    title: str, parameters: Sequence[Parameter], with_start: bool, plain: bool = False
+) -> RenderableType:
+    """plain: lengths and angles alone, whose uncertainties are plain decimals; else in powers of ten where small."""
     with_priors = any(row.prior is not None for row in parameters)
     rows = []
     for row in parameters:
         start = [quantity(row.start, row.u, row.unit)] if with_start else []
         value = quantity(row.value, row.u, row.unit)
         prior = [uncertainty(None if row.prior is None else row.prior["u"])] if with_priors else []
-        rows.append([row.name, *start, value, uncertainty(row.u), *prior, row.unit, row.status])
+        u = plain_uncertainty(row.u, row.unit) if plain else uncertainty(row.u)
+        rows.append([row.name, *start, value, u, *prior, row.unit, row.status])
     heads = ["", *(["start"] if with_start else []), "value", "u", *(["prior u"] if with_priors else [])]
     made = table(title, [*heads, "unit", "status"], rows)
     made.columns[-2].justify = made.columns[-1].justify = "left"

@@ -19,11 +19,22 @@ _SHORT = {name: head for quantity in QUANTITIES for name, head in quantity.heads
 
 
 def before_after(
-    title: str, before: Mapping[str, float], after: Mapping[str, float], more: Sequence[Sequence[str]] = ()
+    title: str,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    more: Sequence[Sequence[str]] = (),
+    without: Mapping[str, float] | None = None,
+    far_off: int = 0,
 ) -> RenderableType:
-    """Each figure that there is, before and after, mm; `more` are further rows."""
-    rows = [(WORDS[name], _cell(before, name), _cell(after, name)) for name in NAMES if name in before or name in after]
-    return table(title, ("", "before / mm", "after / mm"), [*rows, *more])
+    """Each figure that there is, before and after, mm; `more` are further rows; `without`: after, without readings that
+    are far off, so many."""
+    names = [name for name in NAMES if name in before or name in after]
+    if without is None:
+        rows = [(WORDS[name], _cell(before, name), _cell(after, name)) for name in names]
+        return table(title, ("", "before / mm", "after / mm"), [*rows, *more])
+    rows_without = [(WORDS[name], _cell(before, name), _cell(after, name), _cell(without, name)) for name in names]
+    heads = ("", "before / mm", "after / mm", f"without the\n{far_off} far off / mm")
+    return table(title, heads, [*rows_without, *((*row, "–") for row in more)])
 
 
 def overall(title: str, figures: Mapping[str, float]) -> RenderableType:

@@ -18,7 +18,20 @@ _FEWEST = 8
 
 
 def where_to_look(result: Result, suspected: Suspicion | None = None) -> str:
-    """The reading that fits worst, and what the ending or the rows suggest; suspected: what would explain them."""
+    """What to try, and the reading that fits worst; suspected: what would explain them."""
+    residuals = result.residuals
+    if not len(residuals):
+        return ""
+    worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
+    largest = (
+        f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
+        f"(artefact '{worst['artefact']}', placement '{worst['placement']}'); residuals.csv has them all."
+    )
+    return " ".join(filter(None, [what_to_try(result, suspected), largest]))
+
+
+def what_to_try(result: Result, suspected: Suspicion | None = None) -> str:
+    """What the ending or the rows suggest; suspected: what would explain them."""
     residuals = result.residuals
     if not len(residuals):
         return ""
@@ -40,11 +53,6 @@ def where_to_look(result: Result, suspected: Suspicion | None = None) -> str:
             "they may be: [fit] known_length."
         )
     hints += [said for said in [beyond_reach(result)] if said]
-    worst = residuals.row(residuals["norm_mm"].arg_max() or 0, named=True)
-    hints.append(
-        f"The largest residual, {figure_mm(worst['norm_mm'])} mm, is of row {worst['row']} of {worst['file']} "
-        f"(artefact '{worst['artefact']}', placement '{worst['placement']}'); residuals.csv has them all."
-    )
     return " ".join(hints + moved)
 
 

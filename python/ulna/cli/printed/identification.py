@@ -48,7 +48,7 @@ def directions(found: Identification) -> list[RenderableType]:
 
 
 def _lost(direction: Mapping[str, Any]) -> Sequence[str]:
-    cause = _cause(str(direction.get("cause", "")))
+    cause = cause_in_words(str(direction.get("cause", "")))
     frame = " No length or shape depends on it." if direction.get("frame") else ""
     return (
         f"{combination(direction['combination'])}{f'   ({cause})' if cause else ''}",
@@ -57,7 +57,7 @@ def _lost(direction: Mapping[str, Any]) -> Sequence[str]:
     )
 
 
-def _cause(key: str) -> str:
+def cause_in_words(key: str) -> str:
     """In the words of reports; a cause that a later core found has none yet."""
     from ulna.documents.languages.text import plain  # most arms lack nothing, and are not told why
     from ulna.documents.languages.words import Words

@@ -11,11 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import fdtri
 
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.ground.arrays import F64
+from ulna.ground.quantiles import fisher
 from ulna.uncertainties.gum import coverage_factor
 from ulna.uncertainties.regions import coverage_factor_of_region
 
@@ -76,7 +76,7 @@ def _of_region(p: float, count: int, freedom: float) -> float:
         return 1.0
     if math.isinf(freedom):
         return coverage_factor_of_region(p, count)
-    return math.sqrt(count * float(fdtri(count, freedom, p)))
+    return math.sqrt(count * fisher(count, freedom, p))
 
 
 def last_place(expanded: float) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,8 @@ RANGES = 24
 TURN_RAD = 2.0 * np.pi
 FEWEST = 3
 """Readings in a range that give a mean with an uncertainty."""
+ARROW = 0.08
+"""Of the extent of all tips: how long the longest but a twentieth of the vectors are drawn."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,17 @@ class Quiver:
     """(N, 3) the residual; of length rows along the length."""
     reading: I64
     """(N,) index into `Readings`."""
+
+    @property
+    def arrow_factor(self) -> float:
+        """By how much vectors are drawn longer than they are: 1, 2 or 5 times a power of ten."""
+        size = float(np.quantile(np.linalg.norm(self.vector_mm, axis=1), 0.95))
+        extent = float(np.linalg.norm(np.ptp(self.at_mm, axis=0)))
+        if not size > 0.0 or not extent > 0.0:
+            return 1.0
+        wanted = ARROW * extent / size
+        power = 10.0 ** math.floor(math.log10(wanted))
+        return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted))
 
 
 class _Poses:

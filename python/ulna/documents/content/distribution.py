@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-from scipy.special import ndtri
 
 from ulna.artefacts.kinds import KINDS
 from ulna.calibration.placements import PlacementFigures
 from ulna.ground.arrays import F64, I64
+from ulna.ground.quantiles import normals
 
 MOST_BINS = 80
 
@@ -102,5 +102,4 @@ def normal_quantiles(count: int) -> F64:
     at = (np.arange(1, count + 1) - 0.3175) / (count + 0.365)
     at[-1] = 0.5 ** (1.0 / count)
     at[0] = 1.0 - at[-1]
-    quantiles: F64 = ndtri(at)
-    return quantiles
+    return normals(at)

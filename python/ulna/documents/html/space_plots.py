@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ulna.documents.content.clouds import Quiver
@@ -18,8 +16,6 @@ from ulna.ground.arrays import F64, I64
 
 MOST_BARS = 600
 MOST_VECTORS = 1500
-ARROW = 0.08
-"""Of the extent of all tips: how long the longest but a twentieth of the vectors are drawn."""
 
 
 def pose_plot(name: str, readings: ReadingRows, words: Words) -> Plot:
@@ -70,7 +66,7 @@ def space_plot(name: str, quiver: Quiver, readings: ReadingRows, words: Words) -
     say = labels(words)
     outlier = readings.outlier[quiver.reading]
     part = shown(outlier, MOST_VECTORS)
-    factor = arrow_factor(quiver)
+    factor = quiver.arrow_factor
     data = []
     for kept, key, colour in (
         (part.index[~outlier[part.index]], "legend.vectors", MAIN),
@@ -137,14 +133,3 @@ def _arrows(title: str, quiver: Quiver, kept: I64, factor: float, colour: str) -
         shaft[each] = numbers(lines[:, :, k])
         foot[each] = numbers(at[:, k])
     return [shaft, foot]
-
-
-def arrow_factor(quiver: Quiver) -> float:
-    """By how much vectors are drawn longer than they are: 1, 2 or 5 times a power of ten."""
-    size = float(np.quantile(np.linalg.norm(quiver.vector_mm, axis=1), 0.95))
-    extent = float(np.linalg.norm(np.ptp(quiver.at_mm, axis=0)))
-    if not size > 0.0 or not extent > 0.0:
-        return 1.0
-    wanted = ARROW * extent / size
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return float(power * max(step for step in (1.0, 2.0, 5.0) if step * power <= wanted))

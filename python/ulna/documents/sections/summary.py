@@ -45,6 +45,9 @@ def counts(content: Content, words: Words) -> list[Block]:
         said.append(words("summary.search", starts=fit.searched_starts, method=fit.method))
     if fit.folded:
         said.append(words("summary.folded", folded=", ".join(fit.folded)))
+    if fit.signs_found:
+        found_signs = ", ".join(f"{name} = {sign}" for name, sign in fit.signs_found.items())
+        said.append(words("summary.signs-found", signs=own(found_signs)))
     for joints in fit.undecided_signs:
         key = "summary.mirror" if joints in fit.mirrored_signs else "summary.signs"
         said.append(words(key, joints=own(", ".join(map(str, joints)))))

@@ -3,6 +3,7 @@ SHA-256."""
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Calibration, Source, take
 from ulna.formats.toml import read_bytes, sha256
 from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.study.given import StudyLike, as_study, study_path
 from ulna.study.study import Study
 from ulna.uncertainties.uncertainty import check_same
 
@@ -50,18 +52,26 @@ def _read(path: Path, calibration: Calibration) -> tuple[Study, str]:
 def _remarks(study: Study, path: Path, calibration: Calibration) -> list[Said]:
     """Another study than that of the result is refused."""
     check_same(study, calibration.result.provenance, calibration.file.path)
-    _check_rows(study, calibration.result, path)
+    check_rows(study, calibration.result, path)
     return []
 
 
 STUDY = Source("study", "ulna-study", _read, _remarks)
 
 
-def find_study(calibration: Calibration, given: Path | None) -> FoundStudy:
-    """given: the study that the user named. Without it the path in the result is looked for, as it stands and beside
-    the result; a study that has changed since is told and not used. Raises UlnaInputError."""
+def find_study(calibration: Calibration, given: StudyLike | None) -> FoundStudy:
+    """given: the study that the user named, or has in memory. Without it that which the result knows, or the path in it
+    is looked for, as it stands and beside the result; a study that has changed since is told and not used. Raises
+    UlnaInputError."""
     made = calibration.result.provenance
-    if given is not None:
+    own = calibration.result.study if given is None else given
+    if own is not None and not isinstance(own, str | os.PathLike):
+        study = as_study(own)
+        _remarks(study, Path(study.label), calibration)
+        # where files have been left alone since, they are what the study in memory holds
+        return FoundStudy(study, _rows(made, lambda file: _state(Path(str(file["path"])), str(file["sha256"]))), None)
+    if isinstance(given, str | os.PathLike):
+        given = study_path(given)
         return FoundStudy(take(STUDY, given, calibration).value, _rows(made, lambda _: "same"), None)
     name = made.get("study")
     if name is None:
@@ -77,11 +87,11 @@ def find_study(calibration: Calibration, given: Path | None) -> FoundStudy:
     study, _ = _read(root / name, calibration)
     if [file.sha256 for file in study.files] != [file.sha256 for file in files]:
         return FoundStudy(None, files, Said("study.changed", {"study": name, "files": name}))
-    _check_rows(study, calibration.result, root / name)
+    check_rows(study, calibration.result, root / name)
     return FoundStudy(study, files, None)
 
 
-def _check_rows(study: Study, result: Result, path: Path) -> None:
+def check_rows(study: Study, result: Result, path: Path) -> None:
     """Whether residuals and readings belong together row by row. Raises UlnaInputError."""
     rows = np.concatenate([group.row for group in study.readings])
     names = [name for group in study.readings for name in [group.artefact.name] * len(group)]

@@ -19,6 +19,7 @@ from ulna.arm.frames.links import moved
 from ulna.arm.frames.modified import Convention, to_modified
 from ulna.arm.frames.pure import LARGE_MM, pure_dh
 from ulna.arm.frames.rigid import pose, turn
+from ulna.arm.given import ArmLike, as_arm
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
 from ulna.formats.units import MM_PER, RAD_PER, AngleUnit, LengthUnit
@@ -48,12 +49,15 @@ def without_beta(arm: Arm) -> tuple[Arm, list[str]]:
     return replace(arm, joints=joints, probes=probes, uncertainty=None), said
 
 
-def dh_table(arm: Arm, convention: Convention, path: Path, length: LengthUnit = "mm", angle: AngleUnit = "rad") -> str:
+def dh_table(
+    arm: ArmLike, convention: Convention, path: Path, length: LengthUnit = "mm", angle: AngleUnit = "rad"
+) -> str:
     """The text of the table; `path` is the arm's file, for messages.
 
     Columns joint, name, sign, theta0, alpha, a, d, where a joint is a Hayati joint also beta, units behind an
     underscore. turn = sign * encoder - theta0. Raises UlnaInputError for a beta in the modified form.
     """
+    arm = as_arm(arm)
     tilted = [k for k, joint in enumerate(arm.joints, start=1) if joint.beta_rad]
     if tilted and convention == "modified-dh":
         raise UlnaInputError(

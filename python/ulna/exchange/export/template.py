@@ -15,6 +15,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.frames.rigid import from_rpy, inverse, pose, to_quaternion, to_rpy
+from ulna.arm.given import ArmLike, as_arm
 from ulna.exchange.export.link_frames import calibrated_frames
 from ulna.exchange.export.urdf import number, numbers
 from ulna.exchange.urdf.arm import arm_from_chain
@@ -55,10 +56,10 @@ class Filled:
 
 
 def export_template(
-    path: Path, arm: Arm, probe: str, tip_link: str | None = None, base_link: str | None = None
+    path: str | Path, arm: ArmLike, probe: str, tip_link: str | None = None, base_link: str | None = None
 ) -> Filled:
     """`fill_template` of a file. Raises UlnaInputError."""
-    return fill_template(read_document(path), arm, probe, tip_link, base_link)
+    return fill_template(read_document(Path(path)), as_arm(arm), probe, tip_link, base_link)
 
 
 def summary(filled: Filled, probe: str) -> str:

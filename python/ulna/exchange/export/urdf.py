@@ -12,6 +12,7 @@ from ulna.arm.arm import Arm
 from ulna.arm.frames.base import t_base_first
 from ulna.arm.frames.links import link_at_zero
 from ulna.arm.frames.rigid import inverse, pose, to_rpy, turn
+from ulna.arm.given import ArmLike, as_arm
 from ulna.arm.joint import Joint
 from ulna.ground.arrays import F64
 
@@ -26,12 +27,13 @@ NO_MOTOR = (
 )
 
 
-def urdf_text(arm: Arm) -> str:
+def urdf_text(arm: ArmLike) -> str:
     """The arm as a URDF. Fed with the same encoder angles, the link named as a probe stands at `arm.tip`.
 
     A joint's origin holds alpha and a of the link before it (beta as well), then its own theta0 and d; its axis is z,
     or -z where the encoder counts the other way. The root is the arm's base frame. Names become such as ROS takes.
     """
+    arm = as_arm(arm)
     links = _names([BASE, *(f"link_{k}" for k in range(1, arm.n + 1)), *arm.probes])
     joints = _names(joint.name or f"joint_{k}" for k, joint in enumerate(arm.joints, start=1))
     fixed = _names([*joints, *(f"{name}_joint" for name in links[arm.n + 1 :])])[arm.n :]

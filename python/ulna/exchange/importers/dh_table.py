@@ -59,7 +59,11 @@ def read_dh(path: Path, length: str | None = None, angle: str | None = None) -> 
 
     Raises UlnaInputError naming column, row and value of what cannot be used.
     """
-    header = read_header(path, WHAT)
+    return dh_of(read_header(path, WHAT), length, angle)
+
+
+def dh_of(header: Header, length: str | None = None, angle: str | None = None) -> Table:
+    """The same of a table that is open already. Raises UlnaInputError."""
     columns = [_column(name, header, length, angle) for name in header.columns if name not in (*LABELS, "sign")]
     known = [column.parameter for column in columns]
     _check_known(header, known)
@@ -69,19 +73,19 @@ def read_dh(path: Path, length: str | None = None, angle: str | None = None) -> 
     labels = _labels(header, frame)
     joints = [replace(row, name=name or None) for row, (kind, name) in zip(rows, labels, strict=True) if kind != TIP]
     if len(joints) < 2:
-        raise UlnaInputError(f"{path}: there are {len(joints)} joints; expected at least two rows. Add them.")
+        raise UlnaInputError(f"{header.path}: there are {len(joints)} joints; expected at least two rows. Add them.")
     tips: dict[str, Joint] = {}
     for k, (row, (kind, name)) in enumerate(zip(rows, labels, strict=True), start=1):
         if kind != TIP:
             continue
         if name in tips:
             raise UlnaInputError(
-                f"{path}: {header.where(k)}, column 'name': got '{name}' again; expected a name of its own for each "
-                "tip. Correct it."
+                f"{header.path}: {header.where(k)}, column 'name': got '{name}' again; expected a name of its own for "
+                "each tip. Correct it."
             )
         tips[name] = row
     factors = {column.factor for column in columns if column.parameter in LENGTHS}
-    return Table(path, joints, tips, factors.pop() if len(factors) == 1 else None)
+    return Table(header.path, joints, tips, factors.pop() if len(factors) == 1 else None)
 
 
 def _column(name: str, header: Header, length: str | None, angle: str | None) -> _Column:

@@ -13,6 +13,7 @@ from ulna.formats.layout import Layout
 from ulna.formats.tables.arrays import NUMBERS, TEXTS, ArrayTable, NoTextError, Variable, no_such_part, unreadable
 from ulna.ground.arrays import Texts
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import need
 
 _MATLAB_NUMBERS = ("double", "single", "logical", "int", "uint")
 _MOST_LISTED = 1000
@@ -27,6 +28,7 @@ def _h5py() -> Any:
 
 def open_hdf5(path: Path, start: bytes, what: str, layout: Layout) -> ArrayTable:
     """The data sets of one group, or one data set. Raises UlnaInputError for a damaged file."""
+    need(f"{path}: an HDF5 or MAT 7.3 file", "h5py")
     try:
         with _h5py().File(path) as file:
             place = _place(file, layout.dataset)

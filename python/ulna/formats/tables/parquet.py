@@ -14,6 +14,7 @@ from ulna.formats.cells import bad_cell, names_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import installed
 
 _PAGE_BUFFER_BYTES = 1 << 20
 
@@ -45,6 +46,9 @@ class ParquetTable(Header):
         return bad_cell(self, row, column, "" if value is None else str(value), numeric)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        if not installed("pyarrow"):  # then all rows at once, as much memory as that takes
+            yield from super().pieces(numbers, texts, rows)
+            return
         import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
         import pyarrow.parquet
 

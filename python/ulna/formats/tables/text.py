@@ -1,6 +1,7 @@
 """CSV and its dialects: fast where all is well, exact about the cell where it is not.
 
-Polars reads the columns, PyArrow the pieces of long files. Only when they refuse a file, or leave a gap or a number
+Polars reads the columns, PyArrow the pieces of long files (where it is not installed Polars, after a look at every
+cell). Only when they refuse a file, or leave a gap or a number
 that is none, is the file gone through again cell by cell to find the first bad one.
 """
 
@@ -22,6 +23,7 @@ from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.places import Places
 from ulna.formats.tables.lines import LineTable, open_lines, untidy
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.extras import installed
 
 _BLOCK_BYTES = 1 << 20
 _NAMES = {";": "semicolons", "\t": "tabs"}
@@ -101,6 +103,10 @@ class TextTable(Header):
     # ------------------------------------------------------------ piece by piece
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        if not installed("pyarrow"):
+            self._walk(lambda column: column in numbers, [*numbers, *texts])
+            yield from self._forgiving(numbers, texts, 0, rows)
+            return
         import pyarrow as pa  # only for long files: it takes as long to load as a study of a hundred rows
 
         from ulna.formats.tables.arrow import array_piece
@@ -225,7 +231,7 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
         return _looked_at(open_lines(path, what, layout))
     line = start.split(b"\n", 1)[0].decode("utf-8-sig").rstrip("\r")
     separator = layout.separator or ","
-    _check_separator(path, line, separator, layout)
+    check_separator(path, line, separator, layout)
     names = [name.strip() for name in next(csv.reader([line], delimiter=separator), [""])]
     if not layout.header:
         names = [f"c{k}" for k in range(1, len(names) + 1)]
@@ -243,11 +249,11 @@ def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
 def _looked_at(table: LineTable) -> LineTable:
     """The same. Raises UlnaInputError where its header shows another separator than it was read with."""
     if len(table.columns) == 1 and table.header_line:
-        _check_separator(table.path, table.columns[0], table.separator, table.layout, table.head)
+        check_separator(table.path, table.columns[0], table.separator, table.layout, table.head)
     return table
 
 
-def _check_separator(path: Path, line: str, separator: str, layout: Layout, at: str = "line 1") -> None:
+def check_separator(path: Path, line: str, separator: str, layout: Layout, at: str = "line 1") -> None:
     """Another separator in the first line, and none of the expected ones, is told with the key that would say so."""
     if separator in line:
         return

@@ -10,6 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ulna.ground.arrays import Progress
+from ulna.ground.extras import need
 from ulna.reproduce.cheng2011.convergence import study_convergence
 from ulna.reproduce.cheng2011.experiment import repeat_experiment, rerun_experiment
 from ulna.reproduce.cheng2011.rerun import Rerun
@@ -29,6 +30,8 @@ def run(
     With a folder `out`, pictures (SVG and PNG) and `cheng2011.json` are written there, all or none; `force` False
     refuses to overwrite them. Raises UlnaInputError where they cannot be written, KeyboardInterrupt.
     """
+    if out is not None:
+        need("the pictures of a rerun", "matplotlib")
     found = Rerun(
         simulation=rerun_simulation(SEED),
         convergence=study_convergence(SEED, starts, progress),

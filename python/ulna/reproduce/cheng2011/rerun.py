@@ -11,8 +11,8 @@ from typing import Any
 from rich.console import RenderableType
 
 from ulna.formats.output import output_folder
+from ulna.ground.extras import need
 from ulna.reproduce.cheng2011.findings import Findings
-from ulna.reproduce.cheng2011.plots import draw_bars, draw_convergence
 from ulna.reproduce.cheng2011.tables import tables
 from ulna.reproduce.claims import FORMAT
 
@@ -42,6 +42,9 @@ class Rerun(Findings):
 
     def save(self, folder: Path, force: bool = False) -> None:
         """Write pictures (SVG and PNG) and `cheng2011.json` into a folder, all or none. Raises UlnaInputError."""
+        need("the pictures of a rerun", "matplotlib")
+        from ulna.reproduce.cheng2011.plots import draw_bars, draw_convergence
+
         with output_folder(folder, FILES, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / FILES[0]).write_text(text + "\n", encoding="utf-8")

@@ -11,6 +11,7 @@ from rich.console import RenderableType
 
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
+from ulna.ground.extras import need
 from ulna.reproduce.claims import FORMAT
 from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, shimojima2002, wang2007, wang2010
 from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
@@ -53,6 +54,7 @@ class Comparison:
 
     def save(self, folder: Path, force: bool = False) -> None:
         """Write `all.json` and the picture (SVG and PNG) into a folder, all or none. Raises UlnaInputError."""
+        need("the picture of all ways", "matplotlib")
         from ulna.reproduce.ways.plot import draw_ways
 
         with output_folder(folder, FILES, force) as staging:
@@ -68,6 +70,8 @@ def all_ways() -> tuple[Way, ...]:
 
 def run(out: Path | None, progress: Progress | None, *, repeats: int = REPEATS, force: bool = True) -> Comparison:
     """Carry out every way: see `ulna.cli.reproduce.ReproductionModule`."""
+    if out is not None:
+        need("the picture of all ways", "matplotlib")
     found = Comparison(outcomes_of(all_ways(), repeats, progress))
     if out is not None:
         found.save(out, force=force)

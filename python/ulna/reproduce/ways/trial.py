@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.readings import Readings
 from ulna.calibration.calibrate import calibrate as run_calibrate
 from ulna.calibration.estimators import search_box
 from ulna.calibration.result import Result
+from ulna.geometry.rigid import placed
 from ulna.ground.arrays import F64
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.ways.arms import BAR_ENDS_MM, BAR_MM
@@ -114,12 +114,11 @@ def errors_of(arm: Arm, truth: VirtualArm, seed: int) -> Errors:
     length_mm, true_length_mm = _lengths_mm(arm, q_rad), _lengths_mm(truth.arm, q_rad)
     anywhere = truth.anywhere(FRESH_POINTS, rng)
     true_mm, found_mm = truth.arm.tip(anywhere), arm.tip(anywhere)
-    true_mm, found_mm = true_mm - true_mm.mean(axis=0), found_mm - found_mm.mean(axis=0)
-    turn, _ = Rotation.align_vectors(true_mm, found_mm)
+    over_mm = placed(found_mm, true_mm, np.zeros(len(true_mm), dtype=np.int64))
     return Errors(
         bars_mm=length_mm - BAR_MM,
         bars_by_arm_mm=length_mm - true_length_mm,
-        worst_point_mm=float(np.linalg.norm(turn.apply(found_mm) - true_mm, axis=1).max()),
+        worst_point_mm=float(np.linalg.norm(over_mm - true_mm, axis=1).max()),
     )
 
 

@@ -28,6 +28,11 @@ _UNIT_WORDS = {
 }
 
 
+def unit_named(said: str) -> str | None:
+    """The unit of angles that a word means: rad, deg or counts; None where it is no such unit."""
+    return _UNIT_WORDS.get(said.casefold())
+
+
 def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
     """The probe that a file's key names; the arm's only one where it names none. Raises UlnaInputError."""
     try:

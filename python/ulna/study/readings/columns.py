@@ -17,6 +17,7 @@ from ulna.formats.conditions import Condition
 from ulna.formats.header import Header
 from ulna.formats.layout import TableKeys
 from ulna.formats.rows import SplitTable
+from ulna.formats.tables.frame import FrameTable
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
@@ -34,6 +35,11 @@ MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
     return column in MEASURED or is_condition(column) or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
+
+
+def is_length(column: str) -> bool:
+    """Whether its numbers are lengths."""
+    return column in MEASURED or column in COORDINATES
 
 
 def known_columns(joints: int, coordinates: bool) -> list[str]:
@@ -134,6 +140,8 @@ class Source:
     index: int
     """Into `Study.files`."""
     arm_file: Path
+    table: FrameTable | None = None
+    """The readings, their columns under their own names, where they are no file."""
 
 
 def ignored_columns(header: Header, names: Collection[str], key: str) -> list[str]:

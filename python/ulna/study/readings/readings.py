@@ -17,7 +17,7 @@ from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.rows import Rows, Selection
-from ulna.formats.table import file_sha256, read_header, read_table
+from ulna.formats.table import file_sha256, named_header, read_header, read_table
 from ulna.formats.units import RAD_PER, Units
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
@@ -61,7 +61,8 @@ def read_readings(
         own = np.flatnonzero(artefact == index) if isinstance(artefact, np.ndarray) else np.arange(len(frame))
         part = frame if len(own) == len(frame) else frame[own]
         parts.append(_part(part, row[own], chosen, header, source, arm, units, remarks))
-    return parts, InputFile(path, file_sha256(path), rows, header.row_places)
+    digest = file_sha256(path) if source.table is None else source.table.sha256
+    return parts, InputFile(path, digest, rows, header.row_places)
 
 
 def _table(
@@ -73,7 +74,10 @@ def _table(
     place = f"{source.study}: key '{source.key}"
     layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
     coordinates = any(map(has_own_points, artefacts.values()))
-    header = read_header(path, WHAT, layout, known_columns(arm.n, coordinates))
+    known = known_columns(arm.n, coordinates)
+    header = (
+        read_header(path, WHAT, layout, known) if source.table is None else named_header(source.table, layout, known)
+    )
     _check_approach(entry, header, place)
     by_order = entry.approach == "order"
     selection = Selection(entry.where or {}, entry.split, which, place)

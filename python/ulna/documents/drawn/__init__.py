@@ -1,0 +1,1 @@
+"""Drawings of what documents say, on axes of Matplotlib."""

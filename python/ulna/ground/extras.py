@@ -1,0 +1,43 @@
+"""Packages that only some work needs, loaded when that work is asked for, and the extra of Ulna that brings each.
+
+`pip install ulna` brings what a calibration needs; `pip install "ulna[reports]"` also what draws and prints, and so on.
+Whoever loads such a package asks `need` first, before any long work.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+
+from ulna.ground.errors import UlnaInputError
+
+EXTRAS: dict[str, tuple[str, ...]] = {
+    "reports": ("matplotlib", "typst", "fontTools"),
+    "tables": ("pyarrow", "h5py"),
+    "search": ("scipy",),
+    "dask": ("distributed",),
+}
+"""Extra, as in pyproject.toml → what is imported of it."""
+
+
+def installed(package: str) -> bool:
+    """Whether a package can be imported; it is not loaded."""
+    return importlib.util.find_spec(package) is not None
+
+
+def need(what: str, *packages: str) -> None:
+    """Raises UlnaInputError where a package is not installed that `what`, such as "option --pdf", needs."""
+    for package in packages:
+        if not installed(package):
+            raise UlnaInputError(f"{what}: {lacking(package)}")
+
+
+def lacking(module: str) -> str | None:
+    """What to say of a module that cannot be imported; None where no extra brings it."""
+    package = module.split(".")[0]
+    for extra, packages in EXTRAS.items():
+        if package in packages:
+            return (
+                f"the package {package} is not installed; expected it, as Ulna's extra '{extra}' brings it. "
+                f'Run: pip install "ulna[{extra}]"'
+            )
+    return None
