@@ -58,7 +58,7 @@ def test_commands_ask_it(tmp_path: Path, root: Path) -> None:
         (["certificate", result, lab, "-o", tmp_path / "a.txt"], "expected .xml"),
         (["certificate", result, lab, "-o", tmp_path / "a.pdf"], "ulna report"),
         (["show", tmp_path / "arm.toml", "-o", tmp_path / "a.png"], "expected .html or .htm"),
-        (["measure", tmp_path / "arm.toml", "none.csv", "-o", tmp_path / "a.xlsx"], ".parquet"),
+        (["measure", tmp_path / "arm.toml", "none.csv", "-o", tmp_path / "a.docx"], ".parquet"),
     ):
         assert_bad_input(run(*arguments), said)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["arm.toml"]

@@ -51,6 +51,20 @@ def test_limits_are_the_arms_and_what_is_missing_is_marked(tmp_path: Path) -> No
     ]
 
 
+def test_limits_that_nobody_states_are_what_was_read(tmp_path: Path) -> None:
+    arm = limited()
+    bare = replace(arm, joints=tuple(replace(joint, limits_rad=None) for joint in arm.joints))
+    q_rad = np.random.default_rng(8).uniform(-2.0, 2.5, (5, 2, 1, 7))
+    study = Study(None, bare, [readings_of(bare, spec(BAR), 0, q_rad)])
+    text = plan_toml(bare, study, tmp_path)
+    (tmp_path / "plan.toml").write_text(text)
+    found = load_plan_spec(tmp_path / "plan.toml", bare)
+    flat = q_rad.reshape(-1, 7)
+    assert found.travel_rad is not None
+    assert found.travel_rad.tolist() == np.stack([flat.min(axis=0), flat.max(axis=0)], axis=1).tolist()
+    assert text.count("as the study's readings go") == 7
+
+
 def test_counting_encoders_say_their_noise(tmp_path: Path) -> None:
     arm = limited()
     arm = replace(arm, joints=tuple(replace(joint, counts_per_turn=2.0**16) for joint in arm.joints))

@@ -135,6 +135,9 @@ def test_what_is_missing_far_and_besides_is_named(folder: Path, tried: Path, tmp
     assert far.off_deg == pytest.approx(np.degrees(0.7), abs=0.1)
     tips = planned.arm.tip(frame.select([f"q{k}" for k in range(1, 8)]).to_numpy()[row])
     assert far.off_mm == pytest.approx(np.linalg.norm(tips - planned.points_mm[6, 1]), abs=0.01)
+    done = run("plan", folder, "--check", study)
+    row_of = next(line.split() for line in done.stdout.splitlines() if line.startswith("7 "))
+    assert row_of == ["7", "B", str(row + 1), f"{far.off_mm:.0f}", f"{far.off_deg:.0f}", "1"]
     # less tells less, never more
     assert found.u_length_mm is not None
     assert found.u_length_mm > found.promised_u_length_mm

@@ -18,7 +18,7 @@ app = typer.Typer(
     name="import",
     help="Turn readings in somebody else's layout into a study folder: arm.toml, study.toml and the readings.\n\n"
     "Any other table is named in a study as it is (keys separator, decimal, sheet, dataset, columns of "
-    "[\\[readings]]); describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a "
+    "[[readings]]); describe the arm in an arm file (import urdf makes one of a robot's drawing, import dh of a "
     "table).",
     no_args_is_help=True,
     add_completion=False,

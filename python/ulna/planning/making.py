@@ -34,7 +34,7 @@ def plan_toml(arm: Arm, study: Study | None, folder: Path) -> str:
         'units = { length = "mm", angle = "rad" }',
         *_artefact(arm, study, reach_mm, folder),
         *_noise(arm, study),
-        *_travel(arm),
+        *_travel(arm, study),
         "",
         "[within] # where a person can put it, mm: heights above the table at z = table, nothing nearer to the axis",
         "table = 0.0",
@@ -107,13 +107,18 @@ def _noise(arm: Arm, study: Study | None) -> list[str]:
     return ["", "[noise]", f"encoder = {encoder}", touch]
 
 
-def _travel(arm: Arm) -> list[str]:
-    """Nothing where the arm file has all limits; else a pair for each joint, those that are not known as examples."""
+def _travel(arm: Arm, study: Study | None) -> list[str]:
+    """Nothing where the arm file has all limits; else a pair for each joint: where it has none as far as the study's
+    readings go, without a study an example."""
     if all(joint.travel_rad is not None for joint in arm.joints):
         return ["", "# how far joints turn: the arm file says it"]
-    lines = ["", "[travel] # rad; turns that the arm file does not state are examples", "limits = ["]
+    groups = [] if study is None else study.readings
+    read = [q_rad for group in groups for q_rad in (group.q_rad, group.p_rad) if q_rad is not None]
+    read_rad = np.concatenate(read) if read else np.array([[-3.14] * arm.n, [3.14] * arm.n])
+    why = "an example" if study is None else "as the study's readings go"
+    lines = ["", "[travel] # rad", "limits = ["]
     for k, joint in enumerate(arm.joints, start=1):
-        low, high = joint.travel_rad or (-3.14, 3.14)
-        mark = "" if joint.travel_rad is not None else ": an example"
+        low, high = joint.travel_rad or (read_rad[:, k - 1].min(), read_rad[:, k - 1].max())
+        mark = "" if joint.travel_rad is not None else f": {why}"
         lines.append(f"    {toml_value([float(low), float(high)])}, # joint {k}{mark}")
     return [*lines, "]"]

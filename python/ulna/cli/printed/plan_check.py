@@ -30,19 +30,20 @@ def check_report(found: Checked) -> list[RenderableType]:
                 each.feature,
                 str(each.row),
                 f"{each.off_mm:.0f}",
-                f"{each.off_deg:.0f} (joint {each.joint})",
+                f"{each.off_deg:.0f}",
+                str(each.joint),
             )
             for each in found.far[:MOST]
         ]
         title = f"Far from the plan: over {FAR_MM:g} mm or {FAR_DEG:g}°{_more(len(found.far))}"
-        parts += ["", table(title, ("placement", "feature", "row", "tip / mm", "angle / °", "joint"), far)]
+        parts += ["", table(title, ("placement", "feature", "row", "tip / mm", "angle / °", "joint"), far, left=2)]
     if found.worse:
         worse = [
             (each.name, each.unit, f"{each.promised:.2g}", _now(each.now), _times(each.now, each.promised))
             for each in found.worse[:MOST]
         ]
         title = f"Known worse than promised, over {NOTICED:g} times{_more(len(found.worse))}"
-        parts += ["", table(title, ("parameter", "unit", "u promised", "u now", "times"), worse)]
+        parts += ["", table(title, ("parameter", "unit", "u promised", "u now", "times"), worse, left=2)]
     return [*parts, "", _words(found)]
 
 
