@@ -147,7 +147,7 @@ def _badly(result: Result, suspected: Suspicion | None) -> list[RenderableType]:
     fit = result.fit
     parts: list[RenderableType] = [
         Text(f"{result.arm.name}, {result.arm.n} joints. {ending(fit)}"),
-        Text(f"Reading to fit, rms: {figure_mm(fit.rms_start_mm)} mm before, {figure_mm(fit.rms_mm)} mm after."),
+        Text(f"Left: reading to fit, rms {figure_mm(fit.rms_mm)} mm; before {figure_mm(fit.rms_start_mm)} mm."),
     ]
     worst = result.residuals.sort("norm_mm", descending=True).head(_FEW)
     if len(worst):
