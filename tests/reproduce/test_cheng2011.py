@@ -1,10 +1,13 @@
 """The rerun of Cheng 2011: every claim comes out, and the pictures and numbers are written whole or not at all."""
 
+import csv
 import json
+import re
 from io import StringIO
 
 import numpy as np
 import pytest
+from pypdf import PdfReader
 from rich.console import Console
 from tests.oracle import published
 from tests.oracle.core import core_arm
@@ -58,18 +61,24 @@ def test_the_virtual_experiment_is_a_fair_one(rerun):
 
 def test_what_it_writes(rerun):
     found, out, stages = rerun
-    assert sorted(path.name for path in out.iterdir()) == [
-        "bars.png",
-        "bars.svg",
-        "cheng2011.json",
-        "convergence.png",
-        "convergence.svg",
-    ]
+    pictures = [f"{name}.{form}" for name in ("bars", "convergence") for form in ("pdf", "png", "svg")]
+    tables = [f"table-{number}.csv" for number in range(1, 6)]
+    assert sorted(path.name for path in out.iterdir()) == sorted([*pictures, *tables, "cheng2011.json", "tables.tex"])
     written = json.loads((out / "cheng2011.json").read_text("utf-8"))
     assert written == json.loads(json.dumps(found.as_dict()))
     for name in ("bars", "convergence"):
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG")
         assert "</svg>" in (out / f"{name}.svg").read_text("utf-8")
+        assert len(PdfReader(out / f"{name}.pdf").pages) == 1
+    with (out / "table-1.csv").open(encoding="utf-8", newline="") as file:
+        heads, *rows = csv.reader(file)
+    assert heads == ["what", "the paper", "ours", "agrees"]
+    assert [row[0] for row in rows] == [claim.what for claim in found.of_simulation()]
+    assert [row[2] for row in rows] == [claim.ours for claim in found.of_simulation()]
+    latex = (out / "tables.tex").read_text("utf-8")
+    assert latex.count(r"\begin{tabular}") == latex.count(r"\end{tabular}") == 5
+    for line in (line for line in latex.splitlines() if line.endswith(r"\\")):
+        assert not re.search(r"(?<!\\)[%#_]", line), line
     assert [done for stage, done, _ in stages if stage == "convergence"] == list(range(15 * len(WRONG_BY_RAD)))
     assert [done for stage, done, _ in stages if stage == "experiment"] == list(range(60))
 

@@ -164,7 +164,12 @@ def test_the_locked_arm_is_the_same_arm():
 def test_what_is_saved(quick, tmp_path: Path):
     found = quick["shimojima2002"]
     found.save(tmp_path / "out")
-    assert [path.name for path in (tmp_path / "out").iterdir()] == ["shimojima2002.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "shimojima2002.json",
+        "table-1.csv",
+        "table-2.csv",
+        "tables.tex",
+    ]
     written = json.loads((tmp_path / "out" / "shimojima2002.json").read_text("utf-8"))
     assert written == json.loads(json.dumps(found.as_dict()))
     assert written["format"] == "ulna-reproduction/1"
@@ -177,7 +182,8 @@ def test_one_table_and_one_picture_over_all(quick, searching, tmp_path: Path):
     outcomes = [outcome for found in (*quick.values(), *searching.values()) for outcome in found.outcomes]
     whole = comparison.Comparison(outcomes)
     whole.save(tmp_path / "out")
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["all.json", "ways.png", "ways.svg"]
+    names = ["all.json", "table-1.csv", "tables.tex", "ways.pdf", "ways.png", "ways.svg"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == names
     written = json.loads((tmp_path / "out" / "all.json").read_text("utf-8"))
     assert len(written["outcomes"]) == len(outcomes)
     text = printed(whole.table())

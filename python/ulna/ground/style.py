@@ -24,7 +24,9 @@ STYLE: Any = {
 }
 
 
-def save_picture(figure: Figure, folder: Path, name: str) -> None:
-    """As SVG and as PNG."""
+def save_picture(figure: Figure, folder: Path, name: str, pdf: bool = False) -> None:
+    """As SVG and as PNG; as PDF too where it is asked for."""
+    if pdf:
+        figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None})
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
     figure.savefig(folder / f"{name}.png", dpi=160)

@@ -57,7 +57,7 @@ def draw_bars(found: Experiment, folder: Path) -> None:
             color=GREY,
             fontsize=8,
         )
-        save_picture(figure, folder, "bars")
+        save_picture(figure, folder, "bars", pdf=True)
 
 
 def draw_convergence(found: list[Convergence], folder: Path) -> None:
@@ -93,4 +93,4 @@ def draw_convergence(found: list[Convergence], folder: Path) -> None:
         axes.set_ylabel(f"starts that find the arm / %   (of {found[0].starts} each)")
         axes.set_ylim(0, 104)
         axes.legend(loc="lower left", bbox_to_anchor=(0.05, 0.10))
-        save_picture(figure, folder, "convergence")
+        save_picture(figure, folder, "convergence", pdf=True)

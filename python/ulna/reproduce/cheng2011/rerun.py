@@ -15,8 +15,9 @@ from ulna.ground.extras import need
 from ulna.reproduce.cheng2011.findings import Findings
 from ulna.reproduce.cheng2011.tables import tables
 from ulna.reproduce.claims import FORMAT
+from ulna.reproduce.kept import table_files, write_tables
 
-FILES = ("cheng2011.json", "bars.svg", "bars.png", "convergence.svg", "convergence.png")
+FILES = ("cheng2011.json", *(f"{name}.{form}" for name in ("bars", "convergence") for form in ("svg", "png", "pdf")))
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,14 @@ class Rerun(Findings):
         }
 
     def save(self, folder: Path, force: bool = False) -> None:
-        """Write pictures (SVG and PNG) and `cheng2011.json` into a folder, all or none. Raises UlnaInputError."""
+        """Write pictures (SVG, PNG and PDF), tables (CSV and LaTeX) and `cheng2011.json` into a folder, all or none.
+        Raises UlnaInputError."""
         need("the pictures of a rerun", "matplotlib")
         from ulna.reproduce.cheng2011.plots import draw_bars, draw_convergence
 
-        with output_folder(folder, FILES, force) as staging:
+        shown = self.table()
+        with output_folder(folder, (*FILES, *table_files(shown)), force) as staging:
+            write_tables(shown, staging)
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / FILES[0]).write_text(text + "\n", encoding="utf-8")
             draw_bars(self.experiment, staging)

@@ -13,6 +13,7 @@ from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
 from ulna.ground.extras import need
 from ulna.reproduce.claims import FORMAT
+from ulna.reproduce.kept import table_files, write_tables
 from ulna.reproduce.ways import cheng2010, gao2009, readings, santolaria2010, shimojima2002, wang2007, wang2010
 from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import Trial, start_of
@@ -21,7 +22,7 @@ from ulna.simulation.virtual_arm import VirtualArm
 
 WORKS = (shimojima2002, santolaria2010, wang2007, gao2009, wang2010, cheng2010)
 
-FILES = ("all.json", "ways.svg", "ways.png")
+FILES = ("all.json", "ways.svg", "ways.png", "ways.pdf")
 
 
 def _nothing(truth: VirtualArm, seed: int) -> Trial:
@@ -53,11 +54,14 @@ class Comparison:
         return {"format": FORMAT, "study": "all", "agrees": True, "outcomes": outcome_dicts(self.outcomes)}
 
     def save(self, folder: Path, force: bool = False) -> None:
-        """Write `all.json` and the picture (SVG and PNG) into a folder, all or none. Raises UlnaInputError."""
+        """Write `all.json`, the tables (CSV and LaTeX) and the picture (SVG, PNG and PDF) into a folder, all or none.
+        Raises UlnaInputError."""
         need("the picture of all ways", "matplotlib")
         from ulna.reproduce.ways.plot import draw_ways
 
-        with output_folder(folder, FILES, force) as staging:
+        shown = self.table()
+        with output_folder(folder, (*FILES, *table_files(shown)), force) as staging:
+            write_tables(shown, staging)
             write_json(staging / FILES[0], self.as_dict())
             draw_ways(self.outcomes, staging)
 

@@ -37,4 +37,4 @@ def draw_ways(outcomes: list[Outcome], folder: Path) -> None:
         figure.supxlabel("error that the calibrated arm contributes / µm", fontsize=10)
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=2)
-        save_picture(figure, folder, "ways")
+        save_picture(figure, folder, "ways", pdf=True)

@@ -18,6 +18,7 @@ from ulna.ground.arrays import Progress
 from ulna.ground.terminal import plain_table
 from ulna.reproduce.cheng2011.arms import ENCODER_RAD, SEAT_MM
 from ulna.reproduce.claims import FORMAT, Claim, claims_table
+from ulna.reproduce.kept import table_files, write_tables
 from ulna.reproduce.ways.arms import ARMS, SEVEN, SIX
 from ulna.reproduce.ways.outcome import Outcome, Way, outcomes_of
 from ulna.reproduce.ways.trial import FRESH_BARS, WRONG_MM, WRONG_RAD
@@ -107,9 +108,10 @@ class Rerun:
         }
 
     def save(self, folder: Path, force: bool = False) -> None:
-        """Write `NAME.json` into a folder. Raises UlnaInputError."""
-        name = f"{self.work.name}.json"
-        with output_folder(folder, (name,), force) as staging:
+        """Write `NAME.json` and the tables (CSV and LaTeX) into a folder. Raises UlnaInputError."""
+        name, shown = f"{self.work.name}.json", self.table()
+        with output_folder(folder, (name, *table_files(shown)), force) as staging:
+            write_tables(shown, staging)
             write_json(staging / name, self.as_dict())
 
 
