@@ -34,5 +34,8 @@ def outliers(content: Content, words: Words, most: int) -> list[Block]:
 
 def _outlier(entry: Mapping[str, Any], counted: bool) -> list[Text]:
     cells = [named(entry[key]) if key in entry else NONE for key in PLACE]
+    # a cell of a workbook is called so in every language; a line of a text file follows from its row
+    if "!" in (entry.get("place") or ""):
+        cells[0] = named(f"{entry['row']} ({entry['place']})")
     cells += [own(figure_mm(entry["norm_mm"])), own(number(float(entry["times_scatter"])))]
     return [*cells, own(number(float(entry.get("counted", 1.0))))] if counted else cells
