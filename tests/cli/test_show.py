@@ -86,7 +86,9 @@ def test_nothing_is_overwritten_unless_asked_and_never_an_input(tmp_path: Path) 
     assert_bad_input(here(tmp_path, "arm.toml"), "arm.html: exists already", "--force")
     assert (tmp_path / "arm.html").read_text() == "mine"
     before = (tmp_path / "arm.toml").read_bytes()
-    assert_bad_input(here(tmp_path, "arm.toml", "-o", "arm.toml", "--force"), "arm.toml ends in .toml, which cannot be written")
+    assert_bad_input(
+        here(tmp_path, "arm.toml", "-o", "arm.toml", "--force"), "arm.toml ends in .toml, which cannot be written"
+    )
     assert (tmp_path / "arm.toml").read_bytes() == before
     assert here(tmp_path, "arm.toml", "--force").returncode == 0
     assert (tmp_path / "arm.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
