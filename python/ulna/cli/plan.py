@@ -100,11 +100,10 @@ def _plan(
     from ulna.arm.arm import Arm
     from ulna.cli import output
     from ulna.cli.printed.plan import plan_report
-    from ulna.documents.work_sheet.sheet import NAME, check_paper, work_sheet
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.ground.extras import need
     from ulna.planning.file import load_plan_spec
-    from ulna.planning.folder import NEEDS_PICTURES, files_of
+    from ulna.planning.folder import NEEDS_PICTURES, WORK_SHEET, files_of
     from ulna.planning.plan import plan as run_plan
     from ulna.work.pieces import workers_at
 
@@ -112,9 +111,11 @@ def _plan(
     asked = load_plan_spec(spec, nominal)
     if anywhere:
         asked = replace(asked, within=None)
-    names = [*files_of(asked.artefact), NAME]
+    names = [*files_of(asked.artefact), WORK_SHEET]
     if out is not None:  # before the long work
-        need(NEEDS_PICTURES, "matplotlib")
+        need(NEEDS_PICTURES, "matplotlib", "typst", "fontTools")
+        from ulna.documents.work_sheet.sheet import check_paper
+
         check_output(out, names, force)
         refuse_inputs((out / name for name in names), [arm, *asked.files])
         check_paper(nominal, asked, *paper)
@@ -122,7 +123,9 @@ def _plan(
     with workers_at(dask) as workers, output.progress_bar() as progress:
         found = run_plan(nominal, asked, progress, workers=workers, keep=keep)
     if out is not None:
-        found.save(out, force, {NAME: work_sheet(found, *paper)})
+        from ulna.documents.work_sheet.sheet import work_sheet
+
+        found.save(out, force, {WORK_SHEET: work_sheet(found, *paper)})
     if as_json:
         output.print_json(found.as_dict())
     else:

@@ -21,7 +21,7 @@ from ulna.study.data import FitOptions, Noise
 from ulna.study.study import Study
 
 NEEDS_PICTURES = "the pictures of a plan"
-STUDY, TABLE = "study.toml", "plan.csv"
+STUDY, TABLE, WORK_SHEET = "study.toml", "plan.csv", "work-sheet.pdf"
 PICTURES = ("places.svg", "places.png", "curve.svg", "curve.png", "arm.svg")
 
 

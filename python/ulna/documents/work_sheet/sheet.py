@@ -20,8 +20,6 @@ from ulna.ground.version import VERSION
 from ulna.planning.outcome import Plan
 from ulna.planning.spec import PlanSpec
 
-NAME = "work-sheet.pdf"
-
 
 def work_sheet(plan: Plan, language: str = "en", fonts: Path | None = None) -> bytes:
     """The PDF, A4 across. Raises UlnaInputError where no font has a character that it needs."""
