@@ -32,8 +32,10 @@ MOST_LINES = 60
 _WRITTEN = 3
 #: with fewer parameters a table says nothing
 _FEWEST_ROWS = 8
-#: of what was lost, what is weak, what is far off, what fits worst
+#: of what was lost, what is weak, what fits worst
 _FEW = 4
+#: of what is far off: who has a few bad rows sees all of them
+_FEW_FAR_OFF = 8
 #: a table of parameters has no room for their start in less
 _NARROW = 72
 
@@ -116,20 +118,20 @@ def _open(result: Result, width: int) -> list[RenderableType]:
 def _far_off(result: Result, width: int) -> list[RenderableType]:
     if not result.outliers:
         return []
-    more = len(result.outliers) - _FEW
+    more = len(result.outliers) - _FEW_FAR_OFF
     counted = "They counted in full." if result.fit.loss == "none" else "The loss let them count less."
     parts: list[RenderableType] = [
         "",
         Text(f"Far off the rest: {len(result.outliers)} of {result.fit.readings} readings. {counted} Look at them:"),
-        *(_cut(f" {_off(entry)}", width) for entry in result.outliers[:_FEW]),
+        *(_cut(f" {_off(entry)}", width) for entry in result.outliers[:_FEW_FAR_OFF]),
     ]
     return [*parts, Text(f" … and {more} more: --all, result.json")] if more > 0 else parts
 
 
 def _off(entry: Mapping[str, Any]) -> str:
-    place = f", {entry['place']}" if "place" in entry else ""
+    place = f" ({entry['place']})" if "place" in entry else ""
     names = f"{entry['artefact']}, placement {entry['placement']}"
-    return f"{figure_mm(entry['norm_mm'])} mm: row {entry['row']} of {entry['file']}{place} ({names})"
+    return f"{figure_mm(entry['norm_mm'])} mm: row {entry['row']}{place} of {entry['file']} ({names})"
 
 
 def _verdict(result: Result) -> Text:
