@@ -43,7 +43,7 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "unknown extra": (
         "[fit]",
         '[fit]\nextras = ["complience"]',
-        ("'fit.extras.1'", "'complience'", "'encoder-harmonics', 'link-expansion', 'compliance' or 'backlash'"),
+        ("'fit.extras.1'", "'complience'", "'compliance', 'backlash', 'coupling', 'base-tilt' or 'base-offset'"),
     ),
     "start": ("[fit]", '[fit]\nstart = "guess"', ("'fit.start'", "'guess'", "'given' or 'search'")),
     "whole number": ("[fit]", "[fit]\nseed = 0.5", ("'fit.seed'", "got 0.5", "a whole number")),
