@@ -49,7 +49,7 @@ wheel: build ## build the wheel, examples and all, into target/wheels/
 # ---------------------------------------------------------------- test
 
 .PHONY: test
-test: prerequisites lint types rust-test python-test wheel-test docs ## the whole suite: Rust, Python, lint, types, wheel, docs
+test: prerequisites lint types rust-test python-test docs ## the whole suite: Rust, Python, lint, types, docs
 
 .PHONY: prerequisites
 prerequisites:
