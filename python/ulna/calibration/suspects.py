@@ -70,6 +70,7 @@ def _tried(suspected: Suspicion) -> Suspicion | None:
             assembled.hold,
             max_iterations=_ITERATIONS,
             search_starts=0,
+            known_length_mm=options.known_length_mm,
             poor_above_mm=options.poor_above_mm,
         )
     except (UlnaInputError, _core.UlnaError):

@@ -44,12 +44,13 @@ def calibrate(
         result = run_calibration(loaded, progress)
     if out is not None:
         result.save(out, force)
+    suspected = None if result.fit.converged else suspicion(loaded, result)
     if as_json:
         result.write_json(sys.stdout.write)
+    elif everything:
+        output.print_renderable(*calibration_report(result))
     else:
-        suspected = None if result.fit.converged else suspicion(loaded, result)
-        brief = None if everything else brief_report(result, output.columns(), suspected)
-        output.print_renderable(*(calibration_report(result) if brief is None else brief))
+        output.print_renderable(*brief_report(result, output.columns(), suspected))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES if (out / name).exists())}")
     elif not as_json:
@@ -57,7 +58,7 @@ def calibrate(
     if not result.fit.converged:
         output.say(f"The fit did not converge ({result.fit.termination}): do not use these numbers.")
         if everything or as_json:
-            hint = where_to_look(result, suspicion(loaded, result))
+            hint = where_to_look(result, suspected)
             if hint:
                 output.say(hint)
         raise typer.Exit(1)

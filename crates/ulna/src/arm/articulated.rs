@@ -213,17 +213,17 @@ impl Arm {
         arm.checked()
     }
 
-    /// Whether a parameter is of an effect that is small beside the geometry. (Dimensions of artefacts are no arm's.)
-    pub fn is_small(&self, parameter: usize) -> bool {
-        let mut first = self.geometry_count();
+    /// The effect that a parameter is of, and which of its values it is; none for those of the geometry.
+    pub(crate) fn effect_of(&self, parameter: usize) -> Option<(&dyn Effect, usize)> {
+        let mut value = parameter.checked_sub(self.geometry_count())?;
         for effect in self.effects.all() {
             let count = effect.values().len();
-            if (first..first + count).contains(&parameter) {
-                return effect.is_small();
+            if value < count {
+                return Some((effect, value));
             }
-            first += count;
+            value -= count;
         }
-        parameter >= first
+        None
     }
 
     /// The joint that a parameter belongs to, counted from 0; none for a probe's tip.
@@ -231,15 +231,7 @@ impl Arm {
         if parameter < self.joint_parameter_count() {
             return Some(parameter / 4);
         }
-        let mut first = self.geometry_count();
-        for effect in self.effects.all() {
-            let count = effect.values().len();
-            if (first..first + count).contains(&parameter) {
-                return Some(effect.joint_of(parameter - first));
-            }
-            first += count;
-        }
-        None
+        self.effect_of(parameter).map(|(effect, value)| effect.joint_of(value))
     }
 
     /// Sum of the lengths of all links and the tip, mm: nothing is farther from the base.

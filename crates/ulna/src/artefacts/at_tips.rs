@@ -119,11 +119,7 @@ impl WithSimd for LookOp<'_> {
                         }
                     },
                 );
-                chain.by_encoders(
-                    &mut along,
-                    #[inline(always)]
-                    |own, of_other, ratio| of_other.mul_add(Lanes::splat(simd, ratio), own),
-                );
+                chain.by_encoders_in_lanes(simd, &mut along);
                 let first = component * (component + 1) / 2;
                 for (encoder, (&along, &sigma)) in along.iter().zip(encoder_rad).enumerate() {
                     let along = along * Lanes::splat(simd, sigma);

@@ -5,10 +5,11 @@
 //! readings are met as well as ever. Only the drawing can tell.
 
 use crate::arm::Unit;
+use crate::fit::way::OFF_DRAWING;
 use crate::identify::identifiability::Known;
 use crate::problem::Problem;
 
-/// Factors nearer to 1 are a drawing's own affair: no bar is off by less without anyone's noticing a nick in it.
+/// Factors nearer to 1 are within what drawings and bars are off by anyhow.
 const NEAR: f64 = 2e-3;
 /// What one factor leaves of the lengths' differences from the drawing, in parts, root mean square, if it is to tell them.
 const LEFT: f64 = 0.25;
@@ -18,8 +19,6 @@ const SHORT: f64 = 0.02;
 const FEWEST: usize = 3;
 /// Beyond this, up or down, no drawing was meant.
 const CONTRADICTS: f64 = 2.0;
-/// A drawing known to so much is contradicted by ten times that.
-const OFF_DRAWING: f64 = 10.0;
 
 /// One factor between the lengths found and the lengths drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

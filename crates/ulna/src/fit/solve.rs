@@ -125,7 +125,9 @@ pub fn solve_from(
     prepare(problem);
     problem.weigh(&start, Weighing::Even);
     // most of what an arm does beyond its geometry is small: it is sought from where the geometry is found
-    let geometry: Vec<usize> = free.iter().copied().filter(|&j| !problem.arm().is_small(j)).collect();
+    let arm = problem.arm();
+    let is_large = |j: usize| arm.effect_of(j).map_or(j < arm.geometry_count(), |(effect, _)| !effect.is_small());
+    let geometry: Vec<usize> = free.iter().copied().filter(|&j| is_large(j)).collect();
     let (mut geometry_pins, gram) = pins(problem, &geometry, &start, monitor)?;
     let cost_start = gram.cost();
     let plan = |throw| Plan {

@@ -28,7 +28,8 @@ const SIGNIFICANT: f64 = 4.0;
 /// A family is far behind where the readings see its directions to this part of a radian, or of the reach, and the arm
 /// has left its drawing by so many times what a drawing is known by.
 const FAR: f64 = 0.1;
-const OFF_DRAWING: f64 = 10.0;
+pub(super) const OFF_DRAWING: f64 = 10.0;
+
 /// A fit on its way.
 pub(crate) struct Way<'a> {
     pub problem: &'a mut Problem,

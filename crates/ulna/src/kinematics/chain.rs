@@ -3,6 +3,8 @@
 use super::carried::Carried;
 use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Effects, JointModel};
+use crate::simd::Lanes;
+use pulp::Simd;
 
 /// One joint's numbers as the kernels use them.
 #[derive(Debug, Clone, Copy)]
@@ -160,8 +162,9 @@ impl Chain {
         if 4 * encoder < self.joint_parameter_count() { 4 * encoder } else { self.turn_column() }
     }
 
-    /// How the tip follows every encoder, from how it follows every turn: (encoders) numbers, or as many vectors of them,
-    /// each as in the [`encoder_column`](Self::encoder_column), in place, but for the sign.
+    /// How the tip follows every encoder, from how it follows every turn, in place: a number for each encoder as in its
+    /// [column](Self::encoder_column), but for the sign.
+    /// add: own + other · ratio.
     #[inline(always)]
     pub(crate) fn by_encoders<T: Copy>(&self, by_turn: &mut [T], add: impl Fn(T, T, f64) -> T) {
         let Some(coupling) = &self.effects.coupling else { return };
@@ -171,6 +174,16 @@ impl Chain {
         for (joint, other, ratio) in coupling.pairs() {
             by_turn[other] = add(by_turn[other], given[joint], sense(joint) * sense(other) * ratio);
         }
+    }
+
+    /// The same for vectors of poses.
+    #[inline(always)]
+    pub(crate) fn by_encoders_in_lanes<S: Simd>(&self, simd: S, by_turn: &mut [Lanes<S>]) {
+        self.by_encoders(
+            by_turn,
+            #[inline(always)]
+            |own, of_other, ratio| of_other.mul_add(Lanes::splat(simd, ratio), own),
+        );
     }
 
     /// Which encoder a column is that of, if it is one.

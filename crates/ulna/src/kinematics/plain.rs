@@ -1,7 +1,7 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
 use super::pose::Pose;
-use crate::arm::effects::{BaseOffset, BaseTilt, Compliance, Expansion, FromStated, base};
+use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -66,7 +66,8 @@ impl<'a> Posed<'a> {
             rigid[i] + added + given
         };
         let turns_rad: Vec<f64> = (0..n).map(turn).collect();
-        let t_base = base(effects.base_tilt.as_ref(), effects.base_offset.as_ref());
+        let base = Base::of(effects.base_tilt.as_ref(), effects.base_offset.as_ref());
+        let t_base = base.map_or_else(Isometry3::identity, |base| base.pose());
         let frames = chained(arm, t_base, &turns_rad, &stretches);
         let tip_mm = Vector3::from(arm.probes()[probe].tip_mm) * stretches[n - 1];
         let p_tip = (frames[n] * Point3::from(tip_mm)).coords;

@@ -118,13 +118,8 @@ impl Problem {
         let seen = self.arm.effects().all().any(|effect| effect.sees_the_base_turn());
         let turn = (!seen).then_some(0);
         let lift = (self.arm.joints()[0].model == JointModel::Dh).then_some(3);
-        let mut first = self.arm.geometry_count();
-        let mut stands = vec![];
-        for effect in self.arm.effects().all() {
-            let next = first + effect.values().len();
-            stands.extend((first..next).filter(|_| effect.of_base()));
-            first = next;
-        }
+        let of_base = |&j: &usize| self.arm.effect_of(j).is_some_and(|(effect, _)| effect.of_base());
+        let stands = (self.arm.geometry_count()..self.arm.parameter_count()).filter(of_base);
         turn.into_iter().chain(lift).chain(stands).collect()
     }
 

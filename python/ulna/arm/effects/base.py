@@ -44,8 +44,13 @@ class _OfBase(Effect):
 
     of_first = True
     field: ClassVar[str]
+    """Of what a joint has of it."""
     key: ClassVar[str]
+    """Of a joint's table."""
     array: ClassVar[str]
+    """As the core calls it."""
+    in_unit: ClassVar[str]
+    """Of `Units`: what makes a number of a file one in rad or mm."""
 
     def has(self, own: Any) -> bool:
         """Any numbers, zeros too."""
@@ -58,6 +63,11 @@ class _OfBase(Effect):
     def none(self) -> dict[str, Any]:
         """Nothing said."""
         return {self.field: None}
+
+    def read(self, table: Any, key: str, units: Units, path: Path) -> dict[str, Any]:
+        """Two numbers."""
+        said, factor = getattr(table, self.key), getattr(units, self.in_unit)
+        return {self.field: None if said is None else (said[0] * factor, said[1] * factor)}
 
     def written(self, own: Any) -> dict[str, Any]:
         """Two numbers."""
@@ -93,12 +103,7 @@ class BaseTilt(_OfBase):
     whose, does = "first axis", "leans in the base frame"
     words = "how its first axis leans in the base frame"
     left_out = "a first axis that leans in the base frame"
-    field, key, array = "base_tilt_rad", "base_tilt", "tilt_rad"
-
-    def read(self, table: BaseTiltKeys, key: str, units: Units, path: Path) -> dict[str, Any]:
-        """Two angles."""
-        said = table.base_tilt
-        return {self.field: None if said is None else (said[0] * units.rad, said[1] * units.rad)}
+    field, key, array, in_unit = "base_tilt_rad", "base_tilt", "tilt_rad", "rad"
 
 
 class BaseOffset(_OfBase):
@@ -111,12 +116,7 @@ class BaseOffset(_OfBase):
     whose, does = "first axis", "stands beside the origin of the base frame"
     words = "where its first axis stands beside the origin of the base frame"
     left_out = "a first axis that stands beside the origin of the base frame"
-    field, key, array = "base_offset_mm", "base_offset", "offset_mm"
-
-    def read(self, table: BaseOffsetKeys, key: str, units: Units, path: Path) -> dict[str, Any]:
-        """Two lengths."""
-        said = table.base_offset
-        return {self.field: None if said is None else (said[0] * units.mm, said[1] * units.mm)}
+    field, key, array, in_unit = "base_offset_mm", "base_offset", "offset_mm", "mm"
 
 
 @dataclass(frozen=True)

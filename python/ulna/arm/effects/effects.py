@@ -53,9 +53,6 @@ EXTRAS: tuple[Extra, ...] = tuple(EFFECTS)
 
 NONE = Effects()
 
-UNITS = {effect.unit: effect.drawn for effect in EFFECTS.values()}
-"""Of the parameters, and what may be of each before anybody has measured."""
-
 
 def joint_tables() -> tuple[type[Strict], ...]:
     """The keys of a joint's table that each effect has."""

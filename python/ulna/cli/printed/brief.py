@@ -76,22 +76,26 @@ def _tells(name: str) -> bool:
 
 
 def _parameters(rows: Sequence[Parameter], width: int, room: int) -> list[RenderableType]:
-    """As many as there is room for: what is beyond geometry goes first, then what is held."""
-    head = 3
+    """As many as there is room for: what is beyond geometry goes first, then what is held, from the last on."""
+    with_start = width >= _NARROW
     kept = list(rows)
-    for gives_way in (lambda row: extra_of(row.name) is not None, lambda row: row.status == "held", lambda row: True):
-        lines = room - head - (len(kept) < len(rows))
-        beyond = 4 * any(extra_of(row.name) for row in kept)
-        while len(kept) + beyond > max(lines, _FEWEST_ROWS):
-            last = next((k for k in reversed(range(len(kept))) if gives_way(kept[k])), None)
-            if last is None:
-                break
-            del kept[last]
-            lines = room - head - 1
-            beyond = 4 * any(extra_of(row.name) for row in kept)
-    parts = parameter_tables(kept, with_start=width >= _NARROW)
+
+    def fits() -> bool:
+        lines = sum(_lines(part, width) for part in parameter_tables(kept, with_start))
+        return lines + (len(kept) < len(rows)) <= room
+
+    for _, row in sorted(enumerate(rows), key=lambda numbered: (_stays(numbered[1]), -numbered[0])):
+        if len(kept) <= _FEWEST_ROWS or fits():
+            break
+        kept.remove(row)
+    parts = parameter_tables(kept, with_start)
     left = len(rows) - len(kept)
     return [*parts, Text(f"… and {left} more: --all shows them.")] if left else parts
+
+
+def _stays(row: Parameter) -> int:
+    """The later, the longer it stays."""
+    return 0 if extra_of(row.name) is not None else 1 if row.status == "held" else 2
 
 
 def _open(result: Result, width: int) -> list[RenderableType]:

@@ -10,7 +10,7 @@ use super::effect::{Effect, FromStated};
 use super::stated::Stated;
 use crate::arm::unit::Unit;
 use crate::error::Result;
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 /// Turns the first axis about x, then about the y that has turned along.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,14 +44,7 @@ impl BaseTilt {
     }
 }
 
-/// The pose of the frame of the first axis in the stated frame.
-pub(crate) fn base(tilt: Option<&BaseTilt>, offset: Option<&BaseOffset>) -> Isometry3<f64> {
-    let rotation = tilt.map_or_else(Rotation3::identity, BaseTilt::rotation);
-    let [x, y] = offset.map_or([0.0; 2], |offset| offset.mm);
-    Translation3::new(x, y, 0.0) * nalgebra::UnitQuaternion::from_rotation_matrix(&rotation)
-}
-
-/// The same as numbers for the kernels.
+/// Where the first axis stands in the stated frame, for the maps.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Base {
     /// to the stated frame
@@ -70,6 +63,13 @@ impl Base {
             axes: tilt.map_or([Vector3::x(), Vector3::y()], BaseTilt::axes),
             offset: offset.map_or([0.0; 2], |offset| offset.mm),
         })
+    }
+
+    /// The pose of the frame of the first axis in the stated frame.
+    pub fn pose(&self) -> Isometry3<f64> {
+        let [x, y] = self.offset;
+        let rotation = Rotation3::from_matrix_unchecked(self.rotation);
+        Isometry3::from_parts(Translation3::new(x, y, 0.0), UnitQuaternion::from_rotation_matrix(&rotation))
     }
 }
 

@@ -24,7 +24,7 @@ mod stated;
 
 pub use all::Effects;
 pub use backlash::Backlash;
-pub(crate) use base::{Base, base};
+pub(crate) use base::Base;
 pub use base::{BaseOffset, BaseTilt};
 pub use compliance::{Body, Compliance};
 pub use coupling::Coupling;

@@ -138,11 +138,7 @@ impl WithSimd for VarianceOp<'_> {
                 if along.is_empty() {
                     continue;
                 }
-                self.chain.by_encoders(
-                    &mut along,
-                    #[inline(always)]
-                    |own, of_other, ratio| of_other.mul_add(Lanes::splat(simd, ratio), own),
-                );
+                self.chain.by_encoders_in_lanes(simd, &mut along);
                 for (&along, &sigma) in along.iter().zip(&self.noise.encoder_rad) {
                     let moved = along * Lanes::splat(simd, sigma);
                     variance = moved.mul_add(moved, variance);
