@@ -14,6 +14,7 @@ import numpy as np
 
 import ulna
 from ulna.arm.arm import Arm
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.calibration.recalibrations import recalibrations
 from ulna.reproduce.ways import readings, trial
 from ulna.reproduce.ways.arms import SEVEN, true_arm
@@ -53,7 +54,7 @@ def measured(
     at_mm, feature = touches(kind, truth, seed, rng)
     touched = Touched(kind, np.array(feature))
     q_rad = truth.touch(at_mm, seed, rng)
-    task = Task(touched, q_rad, "bent", kind, truth.errors.encoder_rad, truth.errors.seat_mm)
+    task = Task(touched, q_rad, "bent", kind, ReadingNoise(truth.errors.encoder_rad, truth.errors.seat_mm))
     found = assess(arm, task, study=study, seed=seed, most_trials=trials)
     return touched.values(at_mm[None])[0], found
 

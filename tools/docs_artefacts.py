@@ -7,6 +7,7 @@ import numpy as np
 
 import ulna
 from docs_running import ROOT
+from ulna.arm.reading_noise import UNKNOWN
 from ulna.artefacts.artefact import Artefact
 from ulna.simulation.spec import Drawing, Simulation, Touching
 from ulna.uncertainties.volume import VolumeTask, volume_map
@@ -79,9 +80,7 @@ def _row(way: Way, truth: ulna.Arm) -> str:
         found = np.linalg.norm(result.arm.tip(q_rad[:, 1]) - result.arm.tip(q_rad[:, 0]), axis=1)
         errors.append(np.sqrt(np.mean((found - true_mm) ** 2)))
         determined = result.identifiability.determined
-        task = VolumeTask(
-            travel_rad, next(iter(truth.probes)), "volume", None, None, (LENGTH_MM,), points=100, bars=400
-        )
+        task = VolumeTask(travel_rad, next(iter(truth.probes)), "volume", UNKNOWN, (LENGTH_MM,), points=100, bars=400)
         u_mm = volume_map(result.arm, task, seed=1).lengths[LENGTH_MM].u_mm
         scale = scale or bool(np.isnan(u_mm).any())
         expected.append(float(np.median(u_mm)) if not scale else math.nan)

@@ -257,8 +257,14 @@ class Fitted:
     @property
     def placement_unknowns(self) -> int: ...
     @property
-    def degrees_of_freedom(self) -> int:
-        """observations and priors − placement unknowns − determined parameters."""
+    def degrees_of_freedom(self) -> float:
+        """observations − placement unknowns − what readings alone determine of the parameters."""
+    @property
+    def variance(self) -> float:
+        """Of a whitened residual, by which the covariance was made; 1 where stated noise is not contradicted."""
+    @property
+    def estimated(self) -> bool:
+        """Whether that is from the residuals."""
     @property
     def chi2_per_dof(self) -> float | None:
         """None without stated noise or without degrees of freedom."""

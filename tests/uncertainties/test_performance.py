@@ -12,6 +12,7 @@ from tests.cli_runs import assert_bad_input, run, strict_json
 
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import Effects
+from ulna.arm.reading_noise import UNKNOWN
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.reproduce.ways.arms import SEVEN, true_arm
 from ulna.simulation.mover import Mover
@@ -187,7 +188,7 @@ def test_known_of_a_certificate_is_first_order_too(files: Path) -> None:
     assert known.arms is not None
     touched = Touched("length", np.array([0, 1]))
     q_rad = np.random.default_rng(2).uniform(-2.0, 2.0, (2, 7))
-    task = Task(touched, q_rad, "bent", "task", None, None, digits=1)
+    task = Task(touched, q_rad, "bent", "task", UNKNOWN, digits=1)
     (value,) = assess(known.arm, task, arms=known.arms, most_trials=5000).values
     assert value.monte_carlo is not None
     assert value.monte_carlo.u == pytest.approx(value.u, rel=0.05)

@@ -15,6 +15,7 @@ from tests.cli_runs import assert_bad_input, run, strict_json
 import ulna
 from ulna.arm.arm import Arm
 from ulna.arm.probe import Probe
+from ulna.arm.reading_noise import UNKNOWN, ReadingNoise
 from ulna.formats.models import fill
 from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError
@@ -40,7 +41,7 @@ def calibrated() -> tuple[ulna.Study, Arm]:
 
 
 def task_of(kind: str, feature: list[int], q_rad: np.ndarray, **more: object) -> Task:
-    given = {"encoder_rad": ENCODER_RAD, "seat_mm": SEAT_MM, "digits": 1} | more
+    given = {"noise": ReadingNoise(ENCODER_RAD, SEAT_MM), "digits": 1} | more
     return Task(Touched(kind, np.array(feature)), q_rad, "bent", "task", **given)  # type: ignore[arg-type]
 
 
@@ -80,8 +81,8 @@ def test_a_points_first_order_is_that_of_measure(calibrated) -> None:
     """The same by the program's older way, which takes encoder noise as noise of zero offsets."""
     _, arm = calibrated
     for q_rad in poses(6, 3):
-        found = first_order(arm, task_of("point", [0], q_rad[None], seat_mm=None))
-        xx, xy, xz, yy, yz, zz = TipUncertainty(arm, ENCODER_RAD).covariance(q_rad[None], 0)[0]
+        found = first_order(arm, task_of("point", [0], q_rad[None], noise=ReadingNoise(ENCODER_RAD)))
+        xx, xy, xz, yy, yz, zz = TipUncertainty(arm, ReadingNoise(ENCODER_RAD)).covariance(q_rad[None], 0)[0]
         expected = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
         np.testing.assert_allclose(found.covariance, expected, rtol=1e-6, atol=1e-15)
 
@@ -175,13 +176,13 @@ def test_repeated_calibrations_start_where_the_calibration_ended(calibrated) -> 
 def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
     """Ten degrees of freedom: Student's t by the first order, a multivariate t by trial."""
     _, arm = calibrated
-    task = task_of("length", [0, 1], poses(2, 11), encoder_rad=None, seat_mm=None, degrees_of_freedom=10.0)
+    task = task_of("length", [0, 1], poses(2, 11), noise=ReadingNoise(degrees_of_freedom=10.0))
     (value,) = assess(arm, task, seed=1).values
     assert value.k == pytest.approx(2.2281, abs=1e-4)
     assert value.monte_carlo is not None
     low, high = value.monte_carlo.symmetric
     assert (high - low) / 2 == pytest.approx(value.expanded, rel=0.03)
-    (stated,) = assess(arm, replace(task, degrees_of_freedom=np.inf), most_trials=0).values
+    (stated,) = assess(arm, replace(task, noise=UNKNOWN), most_trials=0).values
     assert stated.k == pytest.approx(1.95996, abs=1e-5)
 
 

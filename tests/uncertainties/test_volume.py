@@ -13,6 +13,7 @@ from tests.cli_runs import assert_bad_input, run, strict_json
 
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.errors import InputWarning
 from ulna.measuring.tip_uncertainty import TipUncertainty
 from ulna.reproduce.ways import readings, trial
@@ -38,15 +39,22 @@ def calibrated() -> Arm:
 
 
 def asked(**more: object) -> VolumeTask:
-    usual = VolumeTask(TRAVEL, "bent", "volume", ENCODER_RAD, 0.008, points=200, bars=100)
+    usual = VolumeTask(TRAVEL, "bent", "volume", ReadingNoise(ENCODER_RAD, 0.008), points=200, bars=100)
     return replace(usual, **more)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("degrees_of_freedom", [np.inf, 20.0])
-def test_a_place_is_as_sure_as_the_measurement_there(calibrated: Arm, degrees_of_freedom: float) -> None:
+@pytest.mark.parametrize(
+    "noise",
+    [
+        ReadingNoise(ENCODER_RAD, 0.008),
+        ReadingNoise(ENCODER_RAD, 0.008, unexplained_mm=0.02, degrees_of_freedom=20.0),
+        ReadingNoise(None, 0.02, degrees_of_freedom=20.0, estimated=True),
+    ],
+)
+def test_a_place_is_as_sure_as_the_measurement_there(calibrated: Arm, noise: ReadingNoise) -> None:
     rng = np.random.default_rng(3)
     q_rad = rng.uniform(-2.5, 2.5, (12, 2, 7))
-    task = asked(degrees_of_freedom=degrees_of_freedom)
+    task = asked(noise=noise)
     u_mm, expanded_mm = Account(calibrated, task).of_lengths(q_rad)
     for k, poses in enumerate(q_rad):
         measured = Task(
@@ -54,16 +62,13 @@ def test_a_place_is_as_sure_as_the_measurement_there(calibrated: Arm, degrees_of
             np.ascontiguousarray(poses),
             "bent",
             "length",
-            ENCODER_RAD,
-            0.008,
-            degrees_of_freedom=degrees_of_freedom,
+            noise,
         )
         (value,) = assess(calibrated, measured, most_trials=0).values
         assert u_mm[k] == pytest.approx(value.u, rel=1e-6)
         assert expanded_mm[k] == pytest.approx(value.expanded, rel=1e-6)
     flat = np.ascontiguousarray(q_rad.reshape(-1, 7))
-    covariance = TipUncertainty(calibrated, ENCODER_RAD).covariance(flat, 0)
-    position = np.sqrt(covariance[:, [0, 3, 5]].sum(axis=1) + 3 * 0.008**2)
+    position = np.sqrt(TipUncertainty(calibrated, noise).covariance(flat, 0)[:, [0, 3, 5]].sum(axis=1))
     assert Account(calibrated, task).of_points(flat) == pytest.approx(position, rel=1e-9)
 
 

@@ -177,8 +177,20 @@ impl Fitted {
     }
 
     #[getter]
-    fn degrees_of_freedom(&self) -> usize {
+    fn degrees_of_freedom(&self) -> f64 {
         self.inner.degrees_of_freedom
+    }
+
+    /// Of a whitened residual, by which the covariance was made.
+    #[getter]
+    fn variance(&self) -> f64 {
+        self.inner.variance
+    }
+
+    /// Whether that was estimated from the residuals.
+    #[getter]
+    fn estimated(&self) -> bool {
+        self.inner.estimated
     }
 
     #[getter]

@@ -25,39 +25,14 @@ def covariance_of_result(document: dict[str, Any], arm: ArmData, path: Path) -> 
         rows = document["covariance"]["matrix"]
         lost = list(document["identifiability"]["lost"])
     except (KeyError, TypeError) as error:
-        _damaged(path, "covariance", f"the tables are not as ulna-result/1 says ({type(error).__name__}: {error})")
+        damaged(path, "covariance", f"the tables are not as ulna-result/1 says ({type(error).__name__}: {error})")
     for name in names:
         _known(name, arm, path, "covariance.names")
     if len(set(names)) != len(names):
-        _damaged(path, "covariance.names", "a name stands twice")
+        damaged(path, "covariance.names", "a name stands twice")
     for number, direction in enumerate(lost, start=1):
         _check_direction(direction, arm, path, f"identifiability.lost.{number}")
     return ParameterCovariance(names, _matrix(rows, names, path), [dict(direction) for direction in lost])
-
-
-def noise_of_result(document: dict[str, Any], arm: ArmData, path: Path) -> F64 | None:
-    """The encoders' standard deviations (n,) rad, where the study stated them. Raises UlnaInputError."""
-    provenance = document.get("provenance")
-    noise = provenance.get("noise") if isinstance(provenance, dict) else None
-    stated = noise.get("encoder_rad") if isinstance(noise, dict) else None
-    if stated is None:
-        return None
-    each = stated if isinstance(stated, list) else [stated] * arm.n
-    if len(each) != arm.n or not all(_number(value) and value > 0 for value in each):
-        _damaged(path, "provenance.noise.encoder_rad", f"expected {arm.n} positive numbers, one per joint of the arm")
-    return np.array(each, dtype=np.float64)
-
-
-def seat_of_result(document: dict[str, Any], path: Path) -> float | None:
-    """The standard deviation of a touch, mm per coordinate, where the study stated it. Raises UlnaInputError."""
-    provenance = document.get("provenance")
-    noise = provenance.get("noise") if isinstance(provenance, dict) else None
-    stated = noise.get("seat_mm") if isinstance(noise, dict) else None
-    if stated is None:
-        return None
-    if not (_number(stated) and stated > 0):
-        _damaged(path, "provenance.noise.seat_mm", "expected a positive number")
-    return float(stated)
 
 
 def _matrix(rows: Any, names: list[str], path: Path) -> F64:
@@ -65,19 +40,19 @@ def _matrix(rows: Any, names: list[str], path: Path) -> F64:
     if not (isinstance(rows, list) and all(isinstance(row, list) and len(row) == size for row in rows)) or (
         len(rows) != size
     ):
-        _damaged(path, "covariance.matrix", f"expected a square matrix of {size} rows, one per name")
+        damaged(path, "covariance.matrix", f"expected a square matrix of {size} rows, one per name")
     cells = [value for row in rows for value in row]
     if cells and all(value is None for value in cells):
         return np.full((size, size), np.nan)  # the calibration could not estimate it
     for k, value in enumerate(cells):
-        if not _number(value):
+        if not is_number(value):
             at = f"{names[k // size]}, {names[k % size]}"
-            _damaged(path, "covariance.matrix", f"got {str(value)[:40]} for {at}; expected a finite number")
+            damaged(path, "covariance.matrix", f"got {str(value)[:40]} for {at}; expected a finite number")
     matrix = np.array(rows, dtype=np.float64).reshape(size, size)
     variance = np.diag(matrix)
     if (variance < 0).any():
         k = int(np.argmax(variance < 0))
-        _damaged(path, "covariance.matrix", f"the variance of {names[k]} is {variance[k]:g}; expected 0 or more")
+        damaged(path, "covariance.matrix", f"the variance of {names[k]} is {variance[k]:g}; expected 0 or more")
     with np.errstate(over="ignore"):  # of numbers that no calibration gives; they are refused as not symmetric
         u = np.sqrt(variance)
         scale = np.outer(np.where(u > 0, u, 1.0), np.where(u > 0, u, 1.0))
@@ -85,28 +60,28 @@ def _matrix(rows: Any, names: list[str], path: Path) -> F64:
         unequal = np.abs(correlation - correlation.T) > _SLACK
     if unequal.any():
         i, k = (int(at[0]) for at in np.nonzero(unequal))
-        _damaged(path, "covariance.matrix", f"it is not symmetric in {names[i]}, {names[k]}")
+        damaged(path, "covariance.matrix", f"it is not symmetric in {names[i]}, {names[k]}")
     if size and np.linalg.eigvalsh((correlation + correlation.T) / 2).min() < -_SLACK * size:
-        _damaged(path, "covariance.matrix", "some combination of parameters has a negative variance")
+        damaged(path, "covariance.matrix", "some combination of parameters has a negative variance")
     return matrix
 
 
 def _check_direction(direction: Any, arm: ArmData, path: Path, key: str) -> None:
     weights = direction.get("combination") if isinstance(direction, dict) else None
     if not isinstance(weights, dict) or not weights:
-        _damaged(path, f"{key}.combination", "expected a table of parameters and weights")
+        damaged(path, f"{key}.combination", "expected a table of parameters and weights")
     for name, weight in weights.items():
         _known(name, arm, path, f"{key}.combination")
-        if not _number(weight):
-            _damaged(path, f"{key}.combination", f"got {str(weight)[:40]} for {name}; expected a finite number")
+        if not is_number(weight):
+            damaged(path, f"{key}.combination", f"got {str(weight)[:40]} for {name}; expected a finite number")
     for text in ("because", "remedy"):
         if not isinstance(direction.get(text), str):
-            _damaged(path, f"{key}.{text}", "expected a text")
+            damaged(path, f"{key}.{text}", "expected a text")
 
 
 def _known(name: Any, arm: ArmData, path: Path, key: str) -> None:
     if name not in arm.parameter_names and not str(name).startswith("artefact."):
-        _damaged(
+        damaged(
             path,
             key,
             f"got {str(name)[:60]!r}, which is no parameter of the arm in this file"
@@ -114,7 +89,8 @@ def _known(name: Any, arm: ArmData, path: Path, key: str) -> None:
         )
 
 
-def _number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """A finite one."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     try:
@@ -123,6 +99,7 @@ def _number(value: Any) -> bool:
         return False
 
 
-def _damaged(path: Path, key: str, what: str) -> NoReturn:
+def damaged(path: Path, key: str, what: str) -> NoReturn:
+    """Raises UlnaInputError: a key of a result says what no calibration writes."""
     end = "" if what[-1] in ".?" else "."
     raise UlnaInputError(f"{path}: key '{key}': {what}{end} The file was changed or damaged: calibrate again.")

@@ -7,10 +7,9 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 
 from ulna.arm.arm import Arm
-from ulna.arm.covariance_file import noise_of_result
 from ulna.arm.file import WHAT, result_file
+from ulna.arm.reading_noise import UNKNOWN, ReadingNoise, noise_of_document
 from ulna.formats.toml import check_format, read_json
-from ulna.ground.arrays import F64
 from ulna.ground.errors import wrong_type
 
 
@@ -22,8 +21,8 @@ class StandsForArm(ABC):
 
     @property
     @abstractmethod
-    def encoder_u_rad(self) -> F64 | None:
-        """(n,) standard deviation of each encoder's reading, where the study stated it."""
+    def noise(self) -> ReadingNoise:
+        """How its readings scatter, as far as the calibration knew."""
 
 
 ArmLike = Arm | StandsForArm | str | os.PathLike[str]
@@ -37,19 +36,18 @@ def as_arm(given: ArmLike) -> Arm:
     return arm_and_noise(given)[0]
 
 
-def arm_and_noise(given: ArmLike) -> tuple[Arm, F64 | None]:
-    """The arm; of a result also the encoders' standard deviations (n,) rad that its study stated. Raises as
-    `as_arm`."""
+def arm_and_noise(given: ArmLike) -> tuple[Arm, ReadingNoise]:
+    """The arm; of a result also how its readings scatter. Raises as `as_arm`."""
     if isinstance(given, Arm):
-        return given, None
+        return given, UNKNOWN
     if isinstance(given, StandsForArm):
-        return given.arm, given.encoder_u_rad
+        return given.arm, given.noise
     if not isinstance(given, str | os.PathLike):
         raise wrong_type(given, EXPECTED)
     path = result_file(Path(given))
     if path.suffix.lower() != ".json":
-        return Arm.load(path), None
+        return Arm.load(path), UNKNOWN
     document, _ = read_json(path, WHAT)
     check_format(document, path, "ulna-result")
     arm = Arm.of_result(document, path)
-    return arm, noise_of_result(document, arm, path)
+    return arm, noise_of_document(document, arm, path)

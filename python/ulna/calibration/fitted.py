@@ -23,6 +23,7 @@ from ulna.calibration.outliers import outliers
 from ulna.calibration.placements import Figures
 from ulna.calibration.poses import PlacementPose, placement_poses
 from ulna.calibration.provenance import provenance
+from ulna.calibration.reading_scatter import reading_scatter
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
 from ulna.study.assembly import Assembled
@@ -86,10 +87,8 @@ class FittedStudy:
     def _poses(self) -> list[PlacementPose]:
         core = self.core
         of_parameters = self._covariance.of(self.assembled.arm.parameter_names)
-        freedom = core.degrees_of_freedom
-        variance_mm2 = core.cost / freedom if freedom else float("nan")
         residuals = [core.residuals(group) for group in range(len(self.study.readings))]
-        return placement_poses(self._arm, self.study, residuals, of_parameters, variance_mm2)
+        return placement_poses(self._arm, self.study, residuals, of_parameters, core.variance)
 
     def _without_far_off(self) -> Figures | None:
         if self.study.fit.loss == "none" or not self._any_outliers():
@@ -113,6 +112,7 @@ class FittedStudy:
             loss=study.fit.loss,
             signs_found=self._signs_found(),
             box_evaluations=0 if self.searched is None else self.searched.evaluations,
+            reading_scatter=reading_scatter(self.core, study),
             scatter={group.artefact.name: scale for group, scale in zip(study.readings, self.core.scales, strict=True)},
         )
 

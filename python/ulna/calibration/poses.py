@@ -47,19 +47,19 @@ def placement_poses(
     study: StudyData,
     residuals_mm: list[F64],
     covariance: ParameterCovariance,
-    variance_mm2: float,
+    variance: float,
 ) -> list[PlacementPose]:
     """Of all standings of all artefacts that have features and stand freely, as far as their features say it.
 
     residuals_mm: of each artefact's readings, (N, 3), tip minus feature; covariance: of the arm's parameters;
-    variance_mm2: of a coordinate of a touch, where no noise is stated. What is not known of an artefact itself (the u
+    variance: of a coordinate of a touch, where no noise is stated. What is not known of an artefact itself (the u
     of its length or of its features) is not in the uncertainties.
     """
     found: list[PlacementPose] = []
     for group, residuals in zip(study.readings, residuals_mm, strict=True):
         features = features_mm(group.artefact)
         if group.artefact.frame == "free" and len(features) and group.p_rad is None:
-            scene = _Scene(arm, study, group, residuals, features, covariance, variance_mm2)
+            scene = _Scene(arm, study, group, residuals, features, covariance, variance)
             found += scene.poses()
     return found
 
@@ -74,7 +74,7 @@ class _Scene:
     residuals_mm: F64
     features_mm: F64
     covariance: ParameterCovariance
-    variance_mm2: float
+    variance: float
 
     def poses(self) -> list[PlacementPose]:
         """Standings whose touches are of the same features in the same order go together."""
@@ -145,7 +145,8 @@ class _Scene:
                 moved = core.encoder_jacobian(q_rad, int(probe), **said) * noise.encoder_rad
                 covariance[own] = moved @ moved.transpose(0, 2, 1)
         stated = noise.encoder_rad is not None or noise.seat_mm is not None
-        variance = (noise.seat_mm or 0.0) ** 2 if stated else self.variance_mm2
+        covariance *= self.variance
+        variance = self.variance * ((noise.seat_mm or 0.0) ** 2 if stated else 1.0)
         # a direction without any noise gets a millionth of the others', as in the fit
         floor = 1e-6 * (np.trace(covariance, axis1=1, axis2=2) / 3.0 + variance)
         covariance += (variance + floor)[:, None, None] * np.eye(3)

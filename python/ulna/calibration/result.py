@@ -6,7 +6,7 @@ import dataclasses
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -16,10 +16,11 @@ import polars as pl
 
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
-from ulna.arm.covariance_file import covariance_of_result, noise_of_result
+from ulna.arm.covariance_file import covariance_of_result
 from ulna.arm.file import arm_document, arm_toml
 from ulna.arm.given import StandsForArm
 from ulna.arm.probes import ProbeView, probe_views
+from ulna.arm.reading_noise import ReadingNoise, noise_of
 from ulna.calibration.about import about_result
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
@@ -32,7 +33,6 @@ from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.models import fill_json
 from ulna.formats.output import output_folder
 from ulna.formats.toml import check_format, read_json
-from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import need
 from ulna.ground.on_demand import OnDemand
@@ -92,9 +92,10 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
         return super().__getstate__() | {"study": None}
 
     @property
-    def encoder_u_rad(self) -> F64 | None:
-        """(n,) standard deviation of each encoder's reading, where the study stated it."""
-        return noise_of_result({"provenance": self.provenance}, self.arm, Path("result"))
+    def noise(self) -> ReadingNoise:
+        """How its readings scatter: as the study stated it, and as the residuals show it."""
+        shown = self.fit.reading_scatter
+        return noise_of(self.provenance.get("noise"), asdict(shown) if shown else None, self.arm, Path("result"))
 
     def its_study(self) -> Study:
         """What it was made of. Raises UlnaInputError of a result that was read from a file."""

@@ -35,6 +35,22 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class ReadingScatter:
+    """What the residuals say of a reading's noise."""
+
+    touch_mm: float | None = None
+    """Where no noise was stated: standard deviation of a touch per coordinate, what the encoders add included."""
+    factor: float | None = None
+    """Where noise was stated: by how much the readings scattered more, or less. 1 where chi² does not contradict what
+    was stated. Uncertainties of parameters are scaled by it."""
+    unexplained_mm: float | None = None
+    """Where they scattered more: the standard deviation per coordinate, beside the stated noise, that the model does
+    not explain."""
+    degrees_of_freedom: float | None = None
+    """Of these figures; None where the stated noise stands."""
+
+
+@dataclass(frozen=True)
 class FitSummary:
     """How the fit ended."""
 
@@ -54,7 +70,8 @@ class FitSummary:
     observations: int
     """Scalar equations: three for each point reading, one for each length row or touch of a surface."""
     placement_unknowns: int
-    degrees_of_freedom: int
+    degrees_of_freedom: float
+    """Equations less what placements and parameters took of them; what is known beforehand takes a part, or none."""
     chi2_per_dof: float | None = None
     """1 where the stated noise is right; None without stated noise."""
     searched_starts: int = 0
@@ -75,6 +92,8 @@ class FitSummary:
     loss: Loss = "none"
     scatter: dict[str, float] = field(default_factory=dict)
     """Of each artefact's readings, from the median: in units of the stated noise, or mm where none is stated."""
+    reading_scatter: ReadingScatter | None = None
+    """What the residuals say of a reading's noise; None without degrees of freedom."""
 
     @classmethod
     def from_core(cls, fitted: _core.Fitted, **more: Any) -> FitSummary:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions, some_of
 from ulna.arm.given import ArmLike, arm_and_noise
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.formats.layout import Layout
 from ulna.formats.tables.frame import frame_table
 from ulna.ground.arrays import F64, I64
@@ -36,7 +37,7 @@ def measure_array(
 ) -> Measured:
     """Of an array (N, n), or (n,) of one pose. Raises UlnaInputError; ValueError for a wrong shape, TypeError for what
     is no array of numbers."""
-    arm, stated_rad = arm_and_noise(given)
+    arm, noise = arm_and_noise(given)
     try:
         q = np.asarray(angles, dtype=np.float64)
     except (TypeError, ValueError):
@@ -56,7 +57,7 @@ def measure_array(
     _check_turns(q_rad, arm, angle)
     index = _probe_indices(arm, probe, len(q))
     conditions = arm.conditions(len(q), temperature_c, approach)
-    return measured(arm, q_rad, index, conditions, stated_rad if encoder_u_rad is None else encoder_u_rad)
+    return measured(arm, q_rad, index, conditions, noise.stated(encoder_u_rad))
 
 
 def measure_frame(
@@ -70,13 +71,12 @@ def measure_frame(
 ) -> Measured:
     """Of a table in memory with columns q1 … qn, perhaps id, probe, temperature. Raises UlnaInputError naming the row
     and column; TypeError for what is no table."""
-    arm, stated_rad = arm_and_noise(given)
+    arm, noise = arm_and_noise(given)
     table = frame_table(frame, FRAME, layout)
     job = MeasureJob(arm, table, probe, angle, "mm", layout=layout, temperature_c=temperature_c)
     whole = job.whole()
     ids = whole.texts["id"].to_list() if "id" in whole.texts else None
-    u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
-    return measured(arm, whole.q_rad, whole.probe, whole.conditions, u_rad, ids)
+    return measured(arm, whole.q_rad, whole.probe, whole.conditions, noise.stated(encoder_u_rad), ids)
 
 
 def measured(
@@ -84,14 +84,14 @@ def measured(
     q_rad: F64,
     index: I64,
     conditions: Conditions,
-    encoder_u_rad: F64 | None,
+    noise: ReadingNoise,
     ids: list[str] | None = None,
 ) -> Measured:
     """The points, and what is known of each of them. index (N,): into the arm's probes."""
     points_mm = arm.core.tip(q_rad, index, **conditions)
     covariance_mm2, notes = None, []
     if arm.uncertainty is not None:
-        known = TipUncertainty(arm, encoder_u_rad)
+        known = TipUncertainty(arm, noise)
         six = np.empty((len(q_rad), 6))
         for k in np.unique(index).tolist():
             own = np.flatnonzero(index == k)
@@ -99,7 +99,7 @@ def measured(
         covariance_mm2, notes = six[:, WHOLE], known.notes
     names = list(arm.probes)
     probes = [names[k] for k in index.tolist()]
-    return Measured(arm, q_rad, probes, points_mm, covariance_mm2, encoder_u_rad, notes, ids, conditions)
+    return Measured(arm, q_rad, probes, points_mm, covariance_mm2, noise, notes, ids, conditions)
 
 
 def _check_turns(q_rad: F64, arm: Arm, angle: str) -> None:

@@ -60,8 +60,7 @@ class MeasureJob:
     ) -> None:
         """readings: a file, or a table that is open already; unused: its own names of columns of which nothing is said.
         Raises UlnaInputError for whatever is wrong before the first row."""
-        self.arm, stated_rad = arm_and_noise(arm)
-        encoder_u_rad = stated_rad if encoder_u_rad is None else encoder_u_rad
+        self.arm, noise = arm_and_noise(arm)
         if units not in MM_PER:
             raise UlnaInputError(f"measure: unit '{units}'; expected mm, m or in.{nearest(units, MM_PER)}")
         self.unit = units
@@ -89,7 +88,7 @@ class MeasureJob:
         self._covariance = covariance
         self._uncertainty: TipUncertainty | None = None
         if self.arm.uncertainty is not None:
-            self._uncertainty = TipUncertainty(self.arm, encoder_u_rad)
+            self._uncertainty = TipUncertainty(self.arm, noise.stated(encoder_u_rad))
         elif covariance:
             raise UlnaInputError(
                 f"{arm if isinstance(arm, str | Path) else self.arm.name}: no uncertainty is known of this arm, so its "

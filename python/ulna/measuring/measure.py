@@ -95,8 +95,9 @@ def measure(
 ) -> Measurement | Measured:
     """Tip positions of encoder readings.
 
-    `arm`: an arm, a result, or a path of one. With a result come standard uncertainties: of the calibration, and of the
-    encoders where the study stated their noise (or `encoder_u_rad`, one number or (n,), does).
+    `arm`: an arm, a result, or a path of one. With a result come standard uncertainties: of the calibration, and of
+    the readings, as they scattered in the calibration: encoders where the study stated their noise (or `encoder_u_rad`,
+    one number or (n,), does), touches as stated or as the residuals show, and what the model does not explain.
     `readings`: an array (N, n) of encoder angles, or a table in memory with columns ``q1 … qn`` (optional ``id``,
     ``probe``): gives `Measured`, whose points know their covariances. Or the path of such a table (CSV, Parquet, .xlsx,
     .mat, HDF5), of any number of rows: gives `Measurement`, a table or a file.

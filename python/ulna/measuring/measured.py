@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64, I64
 from ulna.ground.digits import decimals, fixed
 from ulna.ground.shown import About, Shown, Table
@@ -43,8 +44,8 @@ class Measured(Shown):
     covariance_mm2: F64 | None
     """(N, 3, 3) of each point; NaN where it depends on what the calibration did not determine; None of an arm of which
     no uncertainty is known."""
-    encoder_u_rad: F64 | None
-    """(n,) that went into it."""
+    noise: ReadingNoise
+    """That went into it."""
     notes: list[str]
     """Why uncertainties were left empty, and what to do about it."""
     ids: list[str] | None = None
@@ -66,9 +67,9 @@ class Measured(Shown):
     def joint_covariance_mm2(self, points: Sequence[int] | I64 | None = None) -> F64:
         """(3k, 3k) of k points together (None: of all), x, y, z of one after the other.
 
-        Points of one arm err together, for its parameters are the same for all; the noise of encoders is each point's
-        own. NaN as in `covariance_mm2`. Raises ValueError of an arm of which no uncertainty is known, IndexError for a
-        point that there is not.
+        Points of one arm err together, for its parameters are the same for all; the noise of its reading is each
+        point's own. NaN as in `covariance_mm2`. Raises ValueError of an arm of which no uncertainty is known,
+        IndexError for a point that there is not.
         """
         rows = np.arange(len(self)) if points is None else self._rows(points)
         together = self._together(rows)
@@ -84,10 +85,10 @@ class Measured(Shown):
     def lengths(self, first: ArrayLike, second: ArrayLike) -> tuple[F64, F64 | None]:
         """(K,) distances, mm, between points by their numbers, and their standard uncertainties (K,) mm.
 
-        GUM's law with what the points have in common: u² = g (J_b - J_a) C (J_b - J_a)ᵀ gᵀ and the encoders' at both, g
-        the direction from a to b. So what moves both ends alike, as the base frame does, counts for nothing. NaN where
-        a length depends on what was not determined; None of an arm of which no uncertainty is known. Raises IndexError;
-        ValueError where two points are one place.
+        GUM's law with what the points have in common: u² = g (J_b - J_a) C (J_b - J_a)ᵀ gᵀ and the readings' noise at
+        both, g the direction from a to b. So what moves both ends alike, as the base frame does, counts for nothing.
+        NaN where a length depends on what was not determined; None of an arm of which no uncertainty is known. Raises
+        IndexError; ValueError where two points are one place.
         """
         a, b = self._rows(first), self._rows(second)
         apart_mm = self.points_mm[b] - self.points_mm[a]
@@ -144,4 +145,4 @@ class Measured(Shown):
         if self.covariance_mm2 is None:
             raise ValueError(f"no uncertainty is known of arm '{self.arm.name}': measure with a result")
         index = np.array([list(self.arm.probes).index(self.probes[row]) for row in rows.tolist()], dtype=np.int64)
-        return Together(self.arm, self.q_rad[rows], index, self.encoder_u_rad, self.conditions or Conditions(), rows)
+        return Together(self.arm, self.q_rad[rows], index, self.noise, self.conditions or Conditions(), rows)

@@ -1,6 +1,8 @@
-"""How uncertain a measured point is: from the calibration's covariance and, where stated, the encoders' noise.
+"""How uncertain a measured point is: from the calibration's covariance, and from how readings
+scatter.
 
-GUM's law of propagation: C_tip = J C Jᵀ + J_q Σ_q J_qᵀ. Where the tip depends on something that the calibration could
+GUM's law of propagation: C_tip = J C Jᵀ + J_q Σ_q J_qᵀ + s² 1, s the scatter of a touch as the calibration's readings
+had it, and what its model did not explain. Where the tip depends on something that the calibration could
 not determine, no uncertainty is quoted and the reason is told.
 """
 
@@ -14,6 +16,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import NOTHING, Conditions, some_of
 from ulna.arm.directions import steps, worth_naming
+from ulna.arm.reading_noise import UNKNOWN, ReadingNoise
 from ulna.ground.arrays import F64
 from ulna.work.cores import available_cores
 
@@ -35,12 +38,13 @@ drawing leaves open (`ulna.arm.directions.DRAWN`)."""
 class TipUncertainty:
     """Standard uncertainties of tip coordinates of a calibrated arm; collects notes on what it cannot say."""
 
-    def __init__(self, arm: Arm, encoder_u_rad: F64 | None = None) -> None:
-        """`arm.uncertainty` must be set; `encoder_u_rad` (n,): standard deviation of each encoder reading."""
+    def __init__(self, arm: Arm, noise: ReadingNoise = UNKNOWN) -> None:
+        """`arm.uncertainty` must be set."""
         assert arm.uncertainty is not None
         self._core = arm.core
         self._probe_names = list(arm.probes)
-        self._covariances = [_covariance(arm, name, encoder_u_rad) for name in arm.probes]
+        self._covariances = [_covariance(arm, name, noise.encoder_rad) for name in arm.probes]
+        self._own_mm2 = noise.variance_mm2
         self._estimated = bool(np.isfinite(arm.uncertainty.matrix).all())
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
         index = {name: k for k, name in enumerate(arm.parameter_names)}
@@ -80,7 +84,9 @@ class TipUncertainty:
 
     def _block(self, q_rad: F64, probe: int, conditions: Conditions) -> F64:
         parameters = np.arange(len(self._covariances[probe]), dtype=np.int64)
-        return self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], **conditions)
+        found = self._core.tip_covariance(q_rad, probe, parameters, self._covariances[probe], **conditions)
+        found[:, DIAGONAL] += self._own_mm2
+        return found
 
     def _effect_mm(self, q_rad: F64, probe: int, conditions: Conditions, directions: F64) -> F64:
         return self._core.direction_effect(q_rad, probe, self._lost_columns, directions, **conditions)

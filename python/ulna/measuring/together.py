@@ -1,7 +1,7 @@
-"""How measured points err together: the arm's parameters are the same for all of them, encoders' noise is not.
+"""How measured points err together: the arm's parameters are the same for all of them, readings' noise is not.
 
-GUM 5.2.2 with the parameters' covariance C: the covariance of points a and b is J_a C J_bᵀ, and J_q Σ_q J_qᵀ more where
-they are one point.
+GUM 5.2.2 with the parameters' covariance C: the covariance of points a and b is J_a C J_bᵀ, and
+J_q Σ_q J_qᵀ + s² 1 more where they are one point.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions, some_of
 from ulna.arm.directions import steps
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.measuring.tip_uncertainty import MOVES_MM
 
@@ -27,8 +28,7 @@ class Together:
     """(K, n)"""
     probe: I64
     """(K,)"""
-    encoder_u_rad: F64 | None
-    """(n,)"""
+    noise: ReadingNoise
     all_conditions: Conditions
     """Of all points."""
     rows: I64
@@ -38,7 +38,7 @@ class Together:
         """(3K, 3K); NaN in rows and columns of the points (K,) that depend on what was not determined."""
         flat = self._by_parameter.reshape(-1, self._by_parameter.shape[2])
         found: F64 = flat @ self._parameters @ flat.T
-        for k, own in enumerate(self._of_encoders):
+        for k, own in enumerate(self._of_readings):
             # one point named twice has the same noise both times
             for other in np.flatnonzero(self.rows == self.rows[k]).tolist():
                 found[3 * k : 3 * k + 3, 3 * other : 3 * other + 3] += own
@@ -53,9 +53,8 @@ class Together:
         half = len(direction)
         apart = np.einsum("ki,kip->kp", direction, self._by_parameter[half:] - self._by_parameter[:half])
         variance = ((apart @ self._parameters) * apart).sum(axis=1)
-        encoders = self._of_encoders
-        if len(encoders):
-            variance += np.einsum("ki,kij,kj->k", direction, encoders[half:] + encoders[:half], direction)
+        own = self._of_readings
+        variance += np.einsum("ki,kij,kj->k", direction, own[half:] + own[:half], direction)
         u_mm: F64 = np.sqrt(np.maximum(variance, 0.0))
         u_mm[self._moved(apart)] = np.nan
         return u_mm
@@ -71,16 +70,16 @@ class Together:
         return found
 
     @cached_property
-    def _of_encoders(self) -> F64:
-        """(K, 3, 3) mm²; (0, 3, 3) where nobody stated their noise."""
-        if self.encoder_u_rad is None:
-            return np.zeros((0, 3, 3))
-        found = np.empty((len(self.q_rad), 3, 3))
+    def _of_readings(self) -> F64:
+        """(K, 3, 3) mm²"""
+        found = np.tile(self.noise.variance_mm2 * np.eye(3), (len(self.q_rad), 1, 1))
+        if self.noise.encoder_rad is None:
+            return found
         for index in np.unique(self.probe).tolist():
             own = np.flatnonzero(self.probe == index)
             at = some_of(self.all_conditions, self.rows[own])
             by_angle = self.arm.core.encoder_jacobian(np.ascontiguousarray(self.q_rad[own]), index, **at)
-            found[own] = np.einsum("kij,j,klj->kil", by_angle, self.encoder_u_rad**2, by_angle)
+            found[own] += np.einsum("kij,j,klj->kil", by_angle, self.noise.encoder_rad**2, by_angle)
         return found
 
     @cached_property

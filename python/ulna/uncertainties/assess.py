@@ -26,7 +26,7 @@ from ulna.uncertainties.gum import coverage_factor, effective_degrees_of_freedom
 from ulna.uncertainties.left_out import left_out
 from ulna.uncertainties.monte_carlo import MonteCarlo, adaptive, agrees
 from ulna.uncertainties.regions import Ellipsoid, ellipsoid
-from ulna.uncertainties.task import Task, chi_squared_in_blocks, in_blocks
+from ulna.uncertainties.task import Task, in_blocks
 from ulna.work.ledger import Ledger
 from ulna.work.pieces import Threads, Workers
 
@@ -161,7 +161,7 @@ def assess(
             sets = arms.sets
             most_trials = min(most_trials, MOST_ARMS)
         elif study is None:
-            sets = _from_covariance(arm, task.degrees_of_freedom, seed)
+            sets = _from_covariance(arm, task, seed)
         else:
             sets = _from_study(study, arm, seed, workers or Threads(), ledger)
         simulated = _simulated(arm, task, sets, seed, most_trials, progress)
@@ -181,7 +181,7 @@ def assess(
         good = agrees(y, k * u, trial, task.digits)[0] if trial is not None and trial.settled else None
         values.append(Value(name, unit, y, u, k * u, k, budget, trial, good, []))
     source = "performance" if arms is not None else "covariance" if study is None else "recalibrations"
-    point = task.touched.kind == "point" and all(determined) and math.isinf(task.degrees_of_freedom)
+    point = task.touched.kind == "point" and all(determined) and math.isinf(task.noise.degrees_of_freedom)
     return Assessment(
         kind=task.touched.kind,
         probe=task.probe,
@@ -194,7 +194,7 @@ def assess(
         arms=None if arms is None else arms.shares,
         left_out=[
             *([] if arms is None else arms.assumed),
-            *left_out(arm, task.encoder_rad, task.seat_mm, task.u_temperature_k, found.exact),
+            *left_out(arm, task.noise, task.u_temperature_k, found.exact),
         ],
         seed=seed,
         most_trials=most_trials,
@@ -218,10 +218,14 @@ def check_known(arm: Arm) -> ParameterCovariance:
 
 def _degrees_of_freedom(budget: dict[str, float], task: Task) -> float:
     """Effective ones of a value: what the calibration estimated, beside what was stated."""
-    if math.isinf(task.degrees_of_freedom) or not any(budget.values()):
+    freedom = task.noise.degrees_of_freedom
+    if math.isinf(freedom) or not any(budget.values()):
         return math.inf
-    each = [task.degrees_of_freedom if source == "parameters" else math.inf for source in budget]
-    return effective_degrees_of_freedom(np.array(list(budget.values())), np.array(each))
+    # all that the residuals showed is one estimate, of which each takes its multiple
+    shown = {"parameters", "unexplained"} | ({"touch"} if task.noise.estimated else set())
+    one = math.hypot(*(u for source, u in budget.items() if source in shown))
+    rest = [u for source, u in budget.items() if source not in shown]
+    return effective_degrees_of_freedom(np.array([one, *rest]), np.array([freedom, *([math.inf] * len(rest))]))
 
 
 def _simulated(
@@ -243,7 +247,7 @@ def _simulated(
     return [of(value) for value in range(len(task.touched.measurand.units))]
 
 
-def _from_covariance(arm: Arm, degrees_of_freedom: float, seed: int) -> Sets:
+def _from_covariance(arm: Arm, task: Task, seed: int) -> Sets:
     """Normal; where the covariance was scaled by the calibration's own scatter, multivariate t (JCGM 101 6.4.9)."""
     known = arm.uncertainty
     assert known is not None
@@ -257,10 +261,7 @@ def _from_covariance(arm: Arm, degrees_of_freedom: float, seed: int) -> Sets:
 
     def sets(first: int, count: int) -> F64:
         off: F64 = in_blocks(first, count, seed, 2, mean.shape) @ root.T
-        if math.isfinite(degrees_of_freedom):
-            scatter = chi_squared_in_blocks(first, count, seed, 3, degrees_of_freedom)
-            off *= np.sqrt(degrees_of_freedom / scatter)[:, None]
-        return mean + off
+        return mean + off * task.inflated(first, count, seed)[:, None]
 
     return sets
 

@@ -62,14 +62,16 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
     gradient = _gradient(task, tips_mm)
     by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, **task.said()))
     sources = {"parameters": propagate(by_parameter, known.over(arm.parameter_names))}
-    if task.encoder_rad is not None:
+    noise = task.noise
+    if noise.encoder_rad is not None:
         conditions = arm.conditions(len(tips_mm), **task.said())
         by_angle = arm.core.encoder_jacobian(task.q_rad, arm.probe_index(task.probe), **conditions)
         by_encoder = np.einsum("mnj,nji->mni", gradient, by_angle).reshape(len(gradient), -1)
-        sources["encoders"] = propagate(by_encoder, np.diag(np.tile(task.encoder_rad**2, len(tips_mm))))
-    if task.seat_mm is not None:
-        by_touch = gradient.reshape(len(gradient), -1)
-        sources["touch"] = propagate(by_touch, task.seat_mm**2 * np.eye(by_touch.shape[1]))
+        sources["encoders"] = propagate(by_encoder, np.diag(np.tile(noise.encoder_rad**2, len(tips_mm))))
+    by_touch = gradient.reshape(len(gradient), -1)
+    for source, own_mm in (("touch", noise.seat_mm), ("unexplained", noise.unexplained_mm)):
+        if own_mm:
+            sources[source] = propagate(by_touch, own_mm**2 * np.eye(by_touch.shape[1]))
     if task.u_temperature_k:
         ends = np.stack([task.tips_mm(arm, task.q_rad, warmer) for warmer in (STEP_K, -STEP_K)])
         change = task.touched.values(ends)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,13 +11,12 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
-from ulna.arm.covariance_file import noise_of_result, seat_of_result
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
+from ulna.arm.reading_noise import ReadingNoise, noise_of_document
 from ulna.calibration.given import ResultLike, as_result
-from ulna.calibration.result import Result
 from ulna.formats.toml import check_format, read_json
-from ulna.ground.arrays import F64, Progress
+from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.mover import travel_or_limits
 from ulna.study.data import Noise
@@ -38,12 +36,8 @@ class Known:
 
     arm: Arm
     """Its `uncertainty` is set."""
-    encoder_rad: F64 | None
-    """(n,) standard deviation of each encoder; None: nobody stated it."""
-    seat_mm: float | None
-    """Of a touch, per coordinate; None: nobody stated it."""
-    degrees_of_freedom: float
-    """Of the parameters' covariance: finite where the calibration estimated the noise from its own residuals."""
+    noise: ReadingNoise
+    """How its readings scatter."""
     made: dict[str, Any] = field(default_factory=dict)
     """Provenance of the result."""
     arms: Constrained | None = None
@@ -58,41 +52,21 @@ class Known:
                 f"'{tested}'; expected the same, for nothing is known of another one's tip. Measure with '{tested}'."
             )
 
-    def noise(self, stated: Noise | None) -> tuple[F64 | None, float | None]:
-        """encoder_rad and seat_mm of a measurement: as stated of it, else as known."""
-        if stated is None:
-            return self.encoder_rad, self.seat_mm
-        encoder_rad = self.encoder_rad if stated.encoder_rad is None else stated.encoder_rad
-        return encoder_rad, self.seat_mm if stated.seat_mm is None else stated.seat_mm
+    def measuring(self, stated: Noise | None) -> ReadingNoise:
+        """Of a measurement: as stated of it, else as known."""
+        return self.noise if stated is None else self.noise.stated(stated.encoder_rad, stated.seat_mm)
 
 
 def known_of_result(given: ResultLike) -> Known:
     """From a result, a result.json, or the folder of one. Raises UlnaInputError."""
     if not isinstance(given, str | os.PathLike):
-        return _known_in_memory(as_result(given))
+        found = as_result(given)
+        return Known(found.arm, found.noise, found.provenance)
     result = result_file(Path(given))
     document, _ = read_json(result, WHAT)
     check_format(document, result, "ulna-result")
     arm = Arm.of_result(document, result)
-    made = document.get("provenance", {})
-    return Known(
-        arm=arm,
-        encoder_rad=noise_of_result(document, arm, result),
-        seat_mm=seat_of_result(document, result),
-        degrees_of_freedom=math.inf if made.get("noise") else float(document["fit"]["degrees_of_freedom"]),
-        made=made,
-    )
-
-
-def _known_in_memory(result: Result) -> Known:
-    made = result.provenance
-    return Known(
-        arm=result.arm,
-        encoder_rad=result.encoder_u_rad,
-        seat_mm=seat_of_result({"provenance": made}, Path(label_of(result))),
-        degrees_of_freedom=math.inf if made.get("noise") else float(result.fit.degrees_of_freedom),
-        made=made,
-    )
+    return Known(arm, noise_of_document(document, arm, result), document.get("provenance", {}))
 
 
 def label_of(result: ArmLike) -> str:
@@ -113,5 +87,5 @@ def known_of_performance(
     moved = np.flatnonzero(np.ptp(sets, axis=0))
     covariance = np.cov(sets[:, moved], rowvar=False)
     known = ParameterCovariance([arm.parameter_names[k] for k in moved], covariance, [])
-    noise = stated.performance
-    return Known(replace(arm, uncertainty=known), noise.encoder_rad, noise.seat_mm or None, math.inf, arms=arms)
+    noise = ReadingNoise(stated.performance.encoder_rad, stated.performance.seat_mm or None)
+    return Known(replace(arm, uncertainty=known), noise, arms=arms)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE
 from ulna.arm.effects.effects import EFFECTS
-from ulna.ground.arrays import F64
+from ulna.arm.reading_noise import ReadingNoise
 
 
-def left_out(
-    arm: Arm, encoder_rad: F64 | None, seat_mm: float | None, u_temperature_k: float, exact: list[str]
-) -> list[str]:
+def left_out(arm: Arm, noise: ReadingNoise, u_temperature_k: float, exact: list[str]) -> list[str]:
     """What nobody stated or the arm's model has not; exact: parameters that count so."""
     left = []
     if exact:
         left.append(f"parameters that the calibration held, which count as exact: {', '.join(exact)}")
-    if encoder_rad is None:
+    if noise.encoder_rad is None and not noise.estimated:
         left.append("the encoders' noise while measuring: nobody stated it")
-    if seat_mm is None:
+    if noise.seat_mm is None:
         left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
     if TEMPERATURE in arm.needs and not u_temperature_k:
         left.append("the uncertainty of the temperature: nobody stated it")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64
 from ulna.uncertainties.measurands import Touched
 
@@ -27,10 +28,8 @@ class Task:
     probe: str
     label: str
     """What messages call it."""
-    encoder_rad: F64 | None
-    """(n,) standard deviation of each encoder; None: not known."""
-    seat_mm: float | None
-    """Standard deviation of a touch per coordinate; None: not known."""
+    noise: ReadingNoise
+    """How its readings scatter."""
     temperature_c: float | None = None
     """Of the links, where they grow with it."""
     approach: F64 | None = None
@@ -39,8 +38,6 @@ class Task:
     """Standard uncertainty of that, the same for all touches."""
     inside: bool = False
     """Of a ball: a hollow, touched from within."""
-    degrees_of_freedom: float = math.inf
-    """Of the parameters' covariance: finite where the calibration estimated the noise from its own residuals."""
     p: float = 0.95
     """Coverage probability."""
     digits: int = 2
@@ -75,12 +72,24 @@ class Task:
         noise = self._noise(first, count, seed)
         core, probe = arm.core, arm.probe_index(self.probe)
         tips = np.empty((count, poses, 3))
-        q_rad = self.q_rad + noise[:, :, : arm.n] * (0.0 if self.encoder_rad is None else self.encoder_rad)
+        encoder_rad = self.noise.encoder_rad
+        q_rad = self.q_rad + noise[:, :, : arm.n] * (0.0 if encoder_rad is None else encoder_rad)
         for k in range(count):
             at = arm.conditions(poses, **self.said(self.u_temperature_k * noise[k, 0, -1]))
             tips[k] = core.with_parameters(parameters[k]).tip(q_rad[k], probe, **at)
-        tips += (self.seat_mm or 0.0) * noise[:, :, arm.n : arm.n + 3]
+        own_mm = np.sqrt(self.noise.estimated_mm2 * self.inflated(first, count, seed) ** 2 + self.noise.stated_mm2)
+        tips += own_mm[:, None, None] * noise[:, :, arm.n : arm.n + 3]
         return self.values(arm, tips)
+
+    def inflated(self, first: int, count: int, seed: int) -> F64:
+        """(count,) by how much what the calibration estimated from its residuals is larger in each trial, √(ν / χ²_ν):
+        with it normal numbers become Student's t, of parameters and touches alike, for it is one estimate (JCGM 101
+        6.4.9)."""
+        freedom = self.noise.degrees_of_freedom
+        if math.isinf(freedom):
+            return np.ones(count)
+        found: F64 = np.sqrt(freedom / chi_squared_in_blocks(first, count, seed, 3, freedom))
+        return found
 
     def _noise(self, first: int, count: int, seed: int) -> F64:
         """(count, N, n + 4) standard normals: encoders, three coordinates, and one (of the first pose) for the

@@ -75,7 +75,6 @@ def uncertainty(
     known.check_probe(probe, str(task))
     touched = Touched(stated.file.kind, stated.feature)
     touched.check(str(task))
-    encoder_rad, seat_mm = known.noise(stated.noise)
     warm = stated.file.temperature
     return assess(
         arm,
@@ -84,13 +83,11 @@ def uncertainty(
             q_rad=np.ascontiguousarray(stated.q_rad),
             probe=probe,
             label=str(task),
-            encoder_rad=encoder_rad,
-            seat_mm=seat_mm,
+            noise=known.measuring(stated.noise),
             temperature_c=None if warm is None else warm.value,
             approach=stated.approach,
             u_temperature_k=0.0 if warm is None or TEMPERATURE not in arm.needs else warm.u,
             inside=stated.file.inside,
-            degrees_of_freedom=known.degrees_of_freedom,
             p=stated.file.p,
             digits=stated.file.digits,
         ),
@@ -118,21 +115,18 @@ def volume_uncertainty(
     known = _known(result, performance, seed, workers, progress)
     stated = read_volume(Path(task), known.arm)
     known.check_probe(stated.probe, str(task))
-    encoder_rad, seat_mm = known.noise(stated.noise)
     warm = stated.file.temperature
     asked = VolumeTask(
         travel_rad=travel_or_limits(known.arm, stated.travel_rad, str(task)),
         probe=stated.probe,
         label=str(task),
-        encoder_rad=encoder_rad,
-        seat_mm=seat_mm,
+        noise=known.measuring(stated.noise),
         lengths_mm=stated.lengths_mm,
         points=stated.file.points,
         bars=stated.file.bars,
         box_mm=stated.box_mm,
         temperature_c=None if warm is None else warm.value,
         u_temperature_k=0.0 if warm is None or TEMPERATURE not in known.arm.needs else warm.u,
-        degrees_of_freedom=known.degrees_of_freedom,
         p=stated.file.p,
     )
     return volume_map(known.arm, asked, seed, progress)

@@ -11,6 +11,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE
 from ulna.arm.directions import drawn, steps
+from ulna.arm.reading_noise import ReadingNoise
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
@@ -38,10 +39,8 @@ class VolumeTask:
     probe: str
     label: str
     """How messages call it."""
-    encoder_rad: F64 | None
-    """(n,) standard deviation of each encoder while measuring; None: not known."""
-    seat_mm: float | None
-    """Of a touch, per coordinate; None: not known."""
+    noise: ReadingNoise
+    """How readings scatter while measuring."""
     lengths_mm: tuple[float, ...] | None = None
     """None: `PARTS` of the reach."""
     points: int = 20_000
@@ -51,8 +50,6 @@ class VolumeTask:
     """Where; None: wherever the arm reaches."""
     temperature_c: float | None = None
     u_temperature_k: float = 0.0
-    degrees_of_freedom: float = math.inf
-    """Of the parameters' covariance."""
     p: float = 0.95
 
 
@@ -139,7 +136,7 @@ def volume_map(arm: Arm, task: VolumeTask, seed: int = 0, progress: Progress | N
         points=points,
         lengths=lengths,
         not_determined=[known.lost[number] for number in sorted(account.open)],
-        left_out=left_out(arm, task.encoder_rad, task.seat_mm, task.u_temperature_k, account.exact),
+        left_out=left_out(arm, task.noise, task.u_temperature_k, account.exact),
     )
 
 
@@ -199,8 +196,8 @@ class Account:
         for start in range(0, len(q_rad), BLOCK):
             q = np.ascontiguousarray(q_rad[start : start + BLOCK])
             # all coordinates of a point in a row: their variances are summed
-            parameters, others = self._variances(q, np.broadcast_to(np.eye(3), (len(q), 3, 3))[:, :, None])
-            parts.append(np.sqrt((parameters + others).sum(axis=1)))
+            shown, others = self._variances(q, np.broadcast_to(np.eye(3), (len(q), 3, 3))[:, :, None])
+            parts.append(np.sqrt((shown + others).sum(axis=1)))
         return np.concatenate(parts)
 
     def of_lengths(self, q_rad: F64) -> tuple[F64, F64]:
@@ -212,15 +209,16 @@ class Account:
             ends = self._arm.tip(flat, self._task.probe, self._task.temperature_c).reshape(-1, 2, 3)
             along = ends[:, 1] - ends[:, 0]
             along = along / np.linalg.norm(along, axis=1, keepdims=True)
-            parameters, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
-            variance = (parameters + others)[:, 0]
+            shown, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
+            variance = (shown + others)[:, 0]
             us.append(np.sqrt(variance))
-            expanded.append(us[-1] * self._k(parameters[:, 0], variance))
+            expanded.append(us[-1] * self._k(shown[:, 0], variance))
         return np.concatenate(us), np.concatenate(expanded)
 
     def _variances(self, q_rad: F64, by_tip: F64) -> tuple[F64, F64]:
         """(M K, n) poses, K to a value, and (M, values, K, 3) derivatives of the values by the tips: variances
-        (M, values) from the parameters (NaN where they are open) and from the rest."""
+        (M, values) from what the residuals showed, the parameters first of all (NaN where they are open), and from the
+        rest."""
         arm, task = self._arm, self._task
         count, values, each, _ = by_tip.shape
         moved = arm.jacobian(q_rad, task.probe, task.temperature_c).reshape(count, each, 3, -1)
@@ -233,25 +231,27 @@ class Account:
             self.open |= {self._lost[row] for row in np.flatnonzero(away.any(axis=(0, 1))).tolist()}
             parameters[away.any(axis=2)] = np.nan
         others = np.zeros((count, values))
-        if task.encoder_rad is not None:
+        if task.noise.encoder_rad is not None:
             at = arm.conditions(len(q_rad), task.temperature_c)
             turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), **at).reshape(count, each, 3, -1)
-            others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.encoder_rad) ** 2).sum(axis=(2, 3))
-        if task.seat_mm is not None:
-            others += task.seat_mm**2 * (by_tip**2).sum(axis=(2, 3))
+            others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.noise.encoder_rad) ** 2).sum(axis=(2, 3))
+        by_touch = (by_tip**2).sum(axis=(2, 3))
+        shown = parameters + task.noise.estimated_mm2 * by_touch
+        others += task.noise.stated_mm2 * by_touch
         if task.u_temperature_k and task.temperature_c is not None:
             warm, cold = (arm.tip(q_rad, task.probe, task.temperature_c + step) for step in (STEP_K, -STEP_K))
             by_kelvin = ((warm - cold) / (2.0 * STEP_K)).reshape(count, each, 3)
             others += (np.einsum("mvkj,mkj->mv", by_tip, by_kelvin) * task.u_temperature_k) ** 2
-        return parameters, others
+        return shown, others
 
-    def _k(self, parameters: F64, variance: F64) -> F64:
+    def _k(self, shown: F64, variance: F64) -> F64:
         """(M,) coverage factors: Student's where the calibration estimated its noise (GUM G.4.1), else normal."""
         upper = 0.5 * (1.0 + self._task.p)
-        if math.isinf(self._task.degrees_of_freedom):
+        freedom = self._task.noise.degrees_of_freedom
+        if math.isinf(freedom):
             return np.full(len(variance), normal(upper))
         with np.errstate(divide="ignore", invalid="ignore"):
-            effective = self._task.degrees_of_freedom * (variance / parameters) ** 2
+            effective = freedom * (variance / shown) ** 2
         k: F64 = np.full(len(variance), normal(upper))
         some = np.isfinite(effective)
         k[some] = student(effective[some], upper)

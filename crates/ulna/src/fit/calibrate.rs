@@ -3,10 +3,11 @@
 use crate::arm::Arm;
 use crate::artefacts::{Unweighted, Weighing};
 use crate::error::{Error, Result};
+use crate::fit::judged::{Judged, decompose, judge};
 use crate::fit::robust::Standing;
 pub use crate::fit::scale::CommonFactor;
 use crate::fit::scale::common_factor;
-use crate::fit::settle::least_scatter;
+use crate::fit::scatter::at_minimum;
 use crate::fit::solve::{ASSUMED_SCATTER_MM, prepare};
 pub use crate::fit::solve::{Options, SearchReason, Solution, Start, Undecided, solve, solve_from};
 use crate::fit::symmetry::{Freedom, fold};
@@ -16,10 +17,9 @@ use crate::identify::identifiability::{Identifiability, Known, Question, analyse
 use crate::monitor::{Monitor, Unwatched};
 use crate::problem::Problem;
 use crate::problem::assembly::Assembly;
-use crate::problem::pins::{Kind, Pin, Symmetry};
+use crate::problem::pins::Pin;
 use crate::solver::LeastSquares;
 use crate::solver::covariance::covariance;
-use crate::solver::decomposition::Decomposition;
 use crate::solver::gram::Cost;
 use crate::solver::lm::Termination;
 use crate::solver::triangle::Triangle;
@@ -49,10 +49,14 @@ pub struct Fitted {
     pub observations: usize,
     /// Unknowns of placements.
     pub placement_unknowns: usize,
-    /// Equations minus all that was determined.
-    pub degrees_of_freedom: usize,
+    /// Equations minus all that they determined: what is known beforehand takes none.
+    pub degrees_of_freedom: f64,
     /// Cost over degrees of freedom, where noise is stated; with a loss, the scatter of the readings squared.
     pub chi2_per_dof: Option<f64>,
+    /// Of a whitened residual, by which the covariance was made: 1 where noise is stated and the readings do not contradict it.
+    pub variance: f64,
+    /// Whether that was estimated from the residuals.
+    pub estimated: bool,
     /// For each free parameter, what was known of it before: value and standard uncertainty.
     pub priors: Vec<Option<(f64, f64)>>,
     /// How far off each reading is, in units of the scatter of its group.
@@ -71,66 +75,6 @@ pub struct Fitted {
 
 /// Poses looked at to name a cause.
 const SAMPLE_POSES: usize = 60;
-
-/// What was found at one set of parameters: the triangle of all rows and its decomposition.
-pub(crate) struct Judged {
-    pub triangle: Triangle,
-    pub decomposition: Decomposition,
-    /// what was taken out
-    pub symmetries: Vec<Symmetry>,
-}
-
-pub(crate) fn judge(
-    problem: &Problem,
-    free: &[usize],
-    pins: &[Pin],
-    parameters: &[f64],
-    monitor: &dyn Monitor,
-) -> Result<Judged> {
-    let (triangle, natural_scale) = triangle_at(problem, free, parameters, monitor)?;
-    let (decomposition, symmetries) = decompose(problem, free, pins, parameters, &triangle, &natural_scale);
-    Ok(Judged { triangle, decomposition, symmetries })
-}
-
-/// The triangle of all rows at some parameters, the considered dimensions behind the free ones; and the free ones' natural
-/// scale.
-pub(crate) fn triangle_at(
-    problem: &Problem,
-    free: &[usize],
-    parameters: &[f64],
-    monitor: &dyn Monitor,
-) -> Result<(Triangle, Vec<f64>)> {
-    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
-    let mut assembly = Assembly::new(problem, free, &[], monitor);
-    let mut triangle = Triangle::new(free.len() + assembly.considered());
-    assembly.considered_rows(&x, &mut triangle)?;
-    Ok((triangle, assembly.natural_scale().to_vec()))
-}
-
-/// The decomposition with everything taken out that is pinned, as it is at these parameters: a symmetry goes with the
-/// arm, and of a family that the start could not tell apart, what the readings see least here.
-fn decompose(
-    problem: &Problem,
-    free: &[usize],
-    pins: &[Pin],
-    parameters: &[f64],
-    triangle: &Triangle,
-    natural_scale: &[f64],
-) -> (Decomposition, Vec<Symmetry>) {
-    let lasting = pins.iter().filter(|p| p.kind != Kind::Family);
-    let mut symmetries: Vec<Symmetry> = lasting.map(|p| (p.kind, p.direction_at(problem, free, parameters))).collect();
-    let with = |symmetries: &[Symmetry]| {
-        let slices: Vec<&[f64]> = symmetries.iter().map(|(_, direction)| direction.as_slice()).collect();
-        Decomposition::new(triangle, free.len(), natural_scale, &slices)
-    };
-    let seen = with(&symmetries);
-    let families = pins.len() - symmetries.len();
-    if families == 0 {
-        return (seen, symmetries);
-    }
-    symmetries.extend(seen.least_seen(families).iter().map(|v| (Kind::Family, seen.physical(v))));
-    (with(&symmetries), symmetries)
-}
 
 /// The sum of squares at many sets of the free parameters (row-major), placements where they fit best, every reading
 /// weighing alike: what a search without derivatives asks for.
@@ -280,29 +224,12 @@ pub fn fit_from(
     let priors = priors_of(problem, free);
     let observations = problem.equations();
     let placement_unknowns = problem.placement_unknowns();
-    let unknowns = placement_unknowns + judged.decomposition.rank;
-    let degrees_of_freedom = (observations + priors.iter().flatten().count()).saturating_sub(unknowns);
-    let standing = Standing::of(&whitened, degrees_of_freedom as f64, least_scatter(problem));
-    let per_dof = (degrees_of_freedom > 0).then(|| match problem.loss() {
-        None => solution.report.cost / degrees_of_freedom as f64,
-        Some(_) => standing.pooled_scale(&whitened).powi(2),
-    });
     let stated = problem.noise().is_some();
-    let variance = match problem.loss() {
-        Some(_) if degrees_of_freedom == 0 => f64::NAN,
-        Some(loss) => standing.variance(&whitened, loss, degrees_of_freedom as f64),
-        None if stated => 1.0,
-        None => per_dof.unwrap_or(f64::NAN),
-    };
-    if priors.iter().any(Option::is_some) && variance.is_finite() && problem.unit().powi(2) != variance {
-        // priors count as the readings do
-        problem.set_unit(variance.sqrt().max(least_scatter(problem)));
-        judged = judge(problem, free, &solution.pins, &solution.parameters, monitor)?;
-    }
+    let (shown, standing) = at_minimum(problem, free, &solution, &mut judged, &whitened, monitor)?;
     let considered = problem.considered_u(free);
     problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);
-    let identifiability = identifiability(problem, &arm, free, &solution.pins, &judged, options.known, variance.sqrt());
+    let identifiability = identifiability(problem, &arm, free, &solution.pins, &judged, options.known, shown.variance.sqrt());
     let clear = free.iter().zip(&identifiability.in_lost).filter(|(_, lost)| !**lost);
     let determined: Vec<usize> = clear.map(|(&j, _)| j).collect();
     let common_factor = common_factor(problem, &start, &solution.parameters, &determined, options.known);
@@ -312,7 +239,7 @@ pub fn fit_from(
     Ok(Fitted {
         identifiability,
         common_factor,
-        covariance: covariance(&judged.decomposition, &judged.triangle, variance, &considered),
+        covariance: covariance(&judged.decomposition, &judged.triangle, shown.variance, &considered),
         counted: solution.factors.as_ref().map(|factors| squared(factors)),
         arm,
         names: problem.parameter_names(),
@@ -321,8 +248,10 @@ pub fn fit_from(
         folded: folded.steps,
         observations,
         placement_unknowns,
-        degrees_of_freedom,
-        chi2_per_dof: per_dof.filter(|_| stated),
+        degrees_of_freedom: shown.degrees_of_freedom,
+        chi2_per_dof: shown.per_dof.filter(|_| stated),
+        variance: shown.variance,
+        estimated: shown.estimated,
         priors,
         standing,
         solution,

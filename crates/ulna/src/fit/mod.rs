@@ -6,7 +6,9 @@ pub mod robust;
 pub mod solve;
 pub mod symmetry;
 
+mod judged;
 mod scale;
+mod scatter;
 mod search;
 mod settle;
 mod signs;

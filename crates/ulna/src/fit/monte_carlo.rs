@@ -3,7 +3,8 @@
 use crate::arm::Arm;
 use crate::artefacts::Weighing;
 use crate::error::{Error, Result};
-use crate::fit::calibrate::{Options, fit_from, judge, triangle_at};
+use crate::fit::calibrate::{Options, fit_from};
+use crate::fit::judged::{judge, triangle_at};
 use crate::fit::solve::prepare;
 use crate::identify::families::pins;
 use crate::monitor::{Monitor, Stage, Unwatched};

@@ -80,24 +80,28 @@ impl Standing {
         self.lengths[group].iter().zip(&self.dimensions[group]).map(|(&t, &d)| t > rare_length(d))
     }
 
-    /// The variance of a whitened residual that gives a robust fit its covariance: `K² E[ψ²] / E[ψ']²`, with
-    /// `K = 1 + p/n var(ψ') / E[ψ']²` for the share p/n that the fitted parameters have (Huber 1981, section 7.6).
+    /// The variance of a whitened residual that gives a robust fit its covariance, `c² E[ψ²] (1 - κ) / κ²`, where the fitted
+    /// parameters have the share κ of the equations, and `E[1 / (1 + c ψ')] = 1 - κ` says c: right however many parameters
+    /// there are for each equation, as both grow (Bean, Bickel, El Karoui and Yu 2013). With least squares `c = κ / (1 - κ)`
+    /// and it is the sum of squares over the degrees of freedom; with few parameters it is Huber's `E[ψ²] / E[ψ']²`.
     pub fn variance(&self, whitened: &[Whitened], loss: Loss, degrees_of_freedom: f64) -> f64 {
-        let (mut squares, mut slopes, mut slopes_squared, mut count) = (0.0, 0.0, 0.0, 0.0);
+        let (mut squares, mut count, mut slopes) = (0.0, 0.0, vec![]);
         for ((group, lengths), dimensions) in whitened.iter().zip(&self.lengths).zip(&self.dimensions) {
             for (((norm, freedom), &t), &d) in group.norms.iter().zip(&group.freedoms).zip(lengths).zip(dimensions) {
                 let tuning = loss.tuning(d);
-                let slope = loss.weight(t, tuning) + loss.slope(t, tuning) / d;
-                squares += (loss.weight(t, tuning) * norm).powi(2);
-                slopes += freedom * slope;
-                slopes_squared += freedom * slope * slope;
+                let (across, slope) = (loss.weight(t, tuning), loss.slope(t, tuning));
+                squares += (across * norm).powi(2);
                 count += freedom;
+                // of the d directions of a residual, one is its own
+                slopes.push((freedom * (d - 1.0) / d, across));
+                slopes.push((freedom / d, across + slope));
             }
         }
-        let slope = slopes / count;
-        let spread = slopes_squared / count / (slope * slope) - 1.0;
-        let fitted = (1.0 - degrees_of_freedom / count).max(0.0);
-        squares / degrees_of_freedom * ((1.0 + fitted * spread) / slope).powi(2)
+        let fitted = (1.0 - degrees_of_freedom / count).clamp(0.0, 1.0 - LEAST_LEFT);
+        let mean = |of: &dyn Fn(f64) -> f64| slopes.iter().map(|(weight, slope)| weight * of(*slope)).sum::<f64>() / count;
+        // c over κ: for next to no parameters the limit
+        let per_fitted = if fitted < FEW { mean(&|slope| slope).recip() } else { shift(fitted, &mean) / fitted };
+        squares / count * (1.0 - fitted) * per_fitted.powi(2)
     }
 
     /// Scatter over all groups, by their degrees of freedom.
@@ -111,6 +115,28 @@ impl Standing {
         if count > 0.0 { (sum / count).sqrt() } else { 1.0 }
     }
 }
+
+/// A share of fitted parameters that changes no digit.
+const FEW: f64 = 1e-6;
+/// Where a loss lets go of a residual, ψ' falls below zero, and a residual is no longer one of its reading alone: from here on
+/// it counts as this.
+const LEAST_SLOPE: f64 = 0.1;
+
+/// The c with which `E[1 / (1 + c ψ')]` is what is left beside the fitted share, by halving: it falls as c grows.
+fn shift(fitted: f64, mean: &dyn Fn(&dyn Fn(f64) -> f64) -> f64) -> f64 {
+    let left = |c: f64| mean(&|slope| (1.0 + c * slope).max(LEAST_SLOPE).recip());
+    let (mut low, mut high) = (0.0, 1.0);
+    while left(high) > 1.0 - fitted && high < MOST_SHIFT {
+        high *= 2.0;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if left(middle) > 1.0 - fitted { low = middle } else { high = middle }
+    }
+    high
+}
+
+const MOST_SHIFT: f64 = 1e6;
 
 /// The middle one; 0 of none.
 fn median(values: &mut [f64]) -> f64 {

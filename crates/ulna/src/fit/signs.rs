@@ -102,14 +102,18 @@ fn signed(arm: &Arm, unknown: u64, negative: u64) -> Vec<f64> {
     arm.signs().enumerate().map(of).collect()
 }
 
-struct Twin {
-    signs: Vec<f64>,
-    parameters: Vec<f64>,
-    undecided: Vec<Undecided>,
+/// An arm that describes the same readings.
+pub(crate) struct Twin {
+    /// Of every encoder.
+    pub signs: Vec<f64>,
+    /// All parameters, with these signs.
+    pub parameters: Vec<f64>,
+    /// What neither the readings nor the nominal arm tell.
+    pub undecided: Vec<Undecided>,
 }
 
 /// Of all arms that describe the same readings with other signs of some joints, the one nearest to the nominal arm.
-fn nearest(
+pub(crate) fn nearest(
     problem: &Problem,
     free: &[usize],
     signs: &[f64],

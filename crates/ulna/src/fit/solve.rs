@@ -201,7 +201,19 @@ pub fn solve_from(
         report.termination = Termination::PoorMinimum;
     }
     report.cost_start = cost_start;
-    let (parameters, pins, factors) = (way.parameters(), way.pins, way.factors);
+    let (mut parameters, pins, factors) = (way.parameters(), way.pins, way.factors);
+    if !undecided_signs.is_empty() {
+        // the search had outliers in, and did without what is small
+        let signs: Vec<f64> = problem.arm().signs().collect();
+        let twin = signs::nearest(problem, free, &signs, &parameters, options.unknown_signs, true);
+        if twin.signs != signs {
+            problem.set_arm(problem.arm().with_signs(&twin.signs));
+            parameters = twin.parameters;
+            problem.weigh(&parameters, Weighing::Full);
+            problem.discount(factors.as_deref());
+        }
+        undecided_signs = twin.undecided;
+    }
     Ok(Solution { parameters, report, searched_starts, search_reason, pins, factors, undecided_signs })
 }
 

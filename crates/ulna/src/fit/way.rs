@@ -3,9 +3,7 @@
 use crate::arm::Unit;
 use crate::artefacts::Weighing;
 use crate::error::Result;
-use crate::fit::search::is_zero_offset;
 use crate::fit::settle::Settling;
-use crate::fit::symmetry::{Freedom, fold};
 use crate::identify::families::pins;
 use crate::identify::identifiability::Known;
 use crate::monitor::{Monitor, Unwatched};
@@ -25,9 +23,10 @@ const PART: usize = 2_000;
 /// lowers the cost by more than this many variances for each direction: noise does so in one case of fifty (F test). It
 /// is let go as well where the readings tell its members apart better than a drawing does.
 const SIGNIFICANT: f64 = 4.0;
-/// A family is far behind where the readings see its directions to this part of a radian, or of the reach, and the arm
-/// has left its drawing by so many times what a drawing is known by.
+/// A family is far behind where the readings see its directions to this part of a radian, or of the reach: there its
+/// members are told apart by straight lines, as uncertainties are.
 const FAR: f64 = 0.1;
+/// An arm has left its drawing where it is off by so many times what a drawing is known by.
 pub(super) const OFF_DRAWING: f64 = 10.0;
 
 /// A fit on its way.
@@ -153,8 +152,7 @@ impl<'a> Way<'a> {
             released = added(released, self.descend()?);
         }
         let let_go = pinned.0.len().saturating_sub(self.pins.len());
-        let off_drawing = self.off_drawing(&pinned.1);
-        if let_go > 0 && self.left_behind(let_go, report.cost, released.cost, off_drawing)? {
+        if let_go > 0 && self.left_behind(let_go, report.cost, released.cost)? {
             *report = added(*report, released);
         } else {
             (self.pins, self.x) = pinned;
@@ -164,35 +162,20 @@ impl<'a> Way<'a> {
 
     /// Whether the fit has left so many families behind: the cost fell, or the directions that the readings see least are
     /// seen well enough where it is.
-    fn left_behind(&mut self, let_go: usize, cost_pinned: f64, cost: f64, off_drawing: bool) -> Result<bool> {
+    fn left_behind(&mut self, let_go: usize, cost_pinned: f64, cost: f64) -> Result<bool> {
         let unknowns = self.problem.placement_unknowns() + self.free.len();
         let known = self.problem.equations() + self.problem.priors().len();
         let dof = known.saturating_sub(unknowns).max(1);
         let per_dof = cost / dof as f64;
         let variance = if self.problem.noise().is_some() { 1.0 } else { per_dof };
         Ok(cost_pinned - cost > SIGNIFICANT * let_go as f64 * variance
-            || self.tells_apart(let_go, per_dof.max(variance).sqrt(), off_drawing)?)
-    }
-
-    /// Whether an arm, as the twin nearest to the drawing, is no longer the one that was drawn, zero offsets apart: then what
-    /// the drawing could not tell says little of it.
-    fn off_drawing(&self, x: &[f64]) -> bool {
-        let (drawn, mut parameters) = (self.problem.parameters(), self.start.clone());
-        self.free.iter().zip(x).for_each(|(&j, &value)| parameters[j] = value);
-        let is_free = self.problem.is_free(self.free);
-        let twin = fold(self.problem.arm(), &parameters, &drawn, Freedom::of(self.problem, &is_free, true)).parameters;
-        let known = self.problem.known(self.known.length_mm, self.known.angle_rad);
-        let base = self.problem.base_parameters();
-        let counts = |j: usize| j < self.problem.arm().geometry_count() && !is_zero_offset(self.problem, j);
-        self.free
-            .iter()
-            .any(|&j| counts(j) && !base.contains(&j) && (twin[j] - drawn[j]).abs() > OFF_DRAWING * known[j])
+            || self.tells_apart(let_go, per_dof.max(variance).sqrt())?)
     }
 
     /// Whether the readings determine, from where the fit is, the `let_go` directions that they see least: better than an
-    /// arm is known before, or, of an arm off its drawing, so well that it is far from where they are a family: a tip r
-    /// off the last axis, known to σ, is seen to turn about it with u = σ / r. sigma: of a whitened residual.
-    fn tells_apart(&mut self, let_go: usize, sigma: f64, off_drawing: bool) -> Result<bool> {
+    /// arm is known before, or so well that it is far from where they are a family: a tip r off the last axis, known to σ,
+    /// is seen to turn about it with u = σ / r. sigma: of a whitened residual.
+    fn tells_apart(&mut self, let_go: usize, sigma: f64) -> Result<bool> {
         let parameters = self.parameters();
         let symmetries: Vec<Vec<f64>> =
             self.pins.iter().map(|pin| pin.direction_at(self.problem, self.free, &parameters)).collect();
@@ -205,8 +188,8 @@ impl<'a> Way<'a> {
         let units = self.problem.parameter_units();
         let reach_mm = self.problem.reach_mm();
         let natural = |unknown: usize| match units[self.free[unknown]] {
-            Unit::Rad if off_drawing => FAR,
-            Unit::Mm if off_drawing => FAR * reach_mm,
+            Unit::Rad => FAR,
+            Unit::Mm => FAR * reach_mm,
             _ => 0.0,
         };
         let well = |unknown: usize| natural(unknown).max(known[self.free[unknown]]);
@@ -228,11 +211,12 @@ impl<'a> Way<'a> {
     }
 
     fn settle_by(&mut self, report: &mut Report, how: Weighing) -> Result<()> {
-        let Some(mut settling) = Settling::new(self.problem, self.free, self.pins.len(), how) else {
+        let pins = self.pins.clone();
+        let Some(mut settling) = Settling::new(self.problem, self.free, &pins, how) else {
             return Ok(());
         };
         loop {
-            settling.weigh(self.problem, &self.parameters(), report.cost);
+            settling.weigh(self.problem, &self.parameters(), self.monitor)?;
             let before = self.x.clone();
             let again = self.descend()?;
             *report = added(*report, again);

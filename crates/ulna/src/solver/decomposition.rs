@@ -120,6 +120,23 @@ impl Decomposition {
         solution
     }
 
+    /// How much of a column's sum of squares the unknowns explain.
+    pub fn explained(&self, triangle: &Triangle, column: usize) -> f64 {
+        let rows = self.unknowns.min(column + 1);
+        let along = |i: usize| (0..rows).map(|r| self.u[(r, i)] * triangle.at(r, column)).sum::<f64>();
+        (0..self.rank).map(|i| along(i).powi(2)).sum()
+    }
+
+    /// The diagonal of `(JᵀJ)⁺`, over all unknowns.
+    pub fn variances(&self) -> Vec<f64> {
+        let mut variances = vec![0.0; self.unknowns];
+        for (a, &unknown) in self.kept.iter().enumerate() {
+            let part = |i: usize| (self.v[(a, i)] / (self.singular_values[i] * self.norms[a])).powi(2);
+            variances[unknown] = (0..self.rank).map(part).sum();
+        }
+        variances
+    }
+
     /// `(JᵀJ)⁺`, row-major over all unknowns.
     pub fn covariance(&self) -> Vec<f64> {
         let n = self.kept.len();

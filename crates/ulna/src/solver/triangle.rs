@@ -27,6 +27,11 @@ impl Triangle {
         }
     }
 
+    /// For how many unknowns it is.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
     /// Entry of R; column `unknowns` is `Qᵀr`.
     pub fn at(&self, i: usize, j: usize) -> f64 {
         self.top[i * (self.unknowns + 1) + j]

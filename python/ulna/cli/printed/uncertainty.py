@@ -14,6 +14,7 @@ _SOURCES = {
     "parameters": "the arm's parameters",
     "encoders": "the encoders, while measuring",
     "touch": "the touch",
+    "unexplained": "what the model does not explain",
     "temperature": "the temperature",
 }
 
