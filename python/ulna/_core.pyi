@@ -348,6 +348,10 @@ def whitened_rows(problem: Problem, hold: Bool) -> tuple[F64, I64]:
     readings that stand nowhere, as lengths, or whose place is known, each is one. A standing of N equations and e
     unknowns leaves N - e rows: the same information whichever they are. Priors are left out."""
 
+def rows_of_fit(problem: Problem, hold: Bool, fitted: Fitted) -> tuple[F64, F64, I64]:
+    """The same rows where a fit of this problem ended, weighed as it weighed them, then the residual of each (R,), then
+    its standing."""
+
 def held_sensitivity(problem: Problem, hold: Bool, fitted: Fitted, held: I64) -> F64:
     """∂(free)/∂(held) at the solution of a fit of this problem, (free, held): how fitted parameters follow held ones
     that are themselves uncertain. `held` (h,): indices of held parameters. Units as the parameters'."""

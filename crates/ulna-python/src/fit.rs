@@ -1,4 +1,4 @@
-//! `ulna._core.fit`, `identify`, `costs`, `whitened_rows`, `held_sensitivity` and `recalibrate`.
+//! `ulna._core.fit`, `identify`, `costs`, `whitened_rows`, `rows_of_fit`, `held_sensitivity` and `recalibrate`.
 
 use crate::arm::Arm;
 use crate::arrays::{array1, array2, indices, rows, slice};
@@ -135,6 +135,22 @@ pub fn whitened_rows<'py>(
     let found = watched(py, None, |watch| ulna::problem::whitened_rows(inner, &free, watch))?;
     let standing = PyArray1::from_iter(py, found.standing.iter().map(|&number| i64::from(number)));
     Ok((array2(py, found.rows, free.len())?, standing))
+}
+
+/// The same where a fit ended, weighed as it weighed them, with their residuals.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn rows_of_fit<'py>(
+    py: Python<'py>,
+    problem: PyRef<'_, Problem>,
+    hold: PyReadonlyArray1<'_, bool>,
+    fitted: &Fitted,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>)> {
+    let free = free(&problem, &hold)?;
+    let (inner, parameters) = (&problem.inner, &fitted.inner.solution.parameters);
+    let found = watched(py, None, |watch| ulna::problem::rows_at(inner, &free, parameters, watch))?;
+    let standing = PyArray1::from_iter(py, found.standing.iter().map(|&number| i64::from(number)));
+    Ok((array2(py, found.rows, free.len())?, PyArray1::from_vec(py, found.residuals), standing))
 }
 
 /// How the free parameters follow held ones.

@@ -33,6 +33,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fit::identify, module)?)?;
     module.add_function(wrap_pyfunction!(fit::costs, module)?)?;
     module.add_function(wrap_pyfunction!(fit::whitened_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::rows_of_fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::held_sensitivity, module)?)?;
     module.add_function(wrap_pyfunction!(fit::recalibrate, module)?)?;
     Ok(())

@@ -13,6 +13,10 @@ from ulna.arm.covariance_file import damaged, is_number
 from ulna.arm.data import ArmData
 from ulna.ground.arrays import F64
 
+MOVES_MM = 1e-3
+NOTICED = 0.1
+"""A part of the scatter that adds half a percent to it."""
+
 
 @dataclass(frozen=True)
 class ReadingNoise:
@@ -26,7 +30,9 @@ class ReadingNoise:
     unexplained_mm: float = 0.0
     """Per coordinate: what the calibration's residuals showed beside the stated noise, which the model has not."""
     degrees_of_freedom: float = math.inf
-    """Of whatever the residuals showed: finite where the covariance of the parameters was scaled by it too."""
+    """Of whatever the residuals showed of a touch."""
+    parameter_freedom: float = math.inf
+    """Degrees of freedom of the parameters' covariance: finite where it was scaled by what residuals showed."""
     estimated: bool = False
     """Whether `seat_mm` is from residuals."""
 
@@ -34,6 +40,11 @@ class ReadingNoise:
     def variance_mm2(self) -> float:
         """Of a tip coordinate, the encoders aside."""
         return (self.seat_mm or 0.0) ** 2 + self.unexplained_mm**2
+
+    @property
+    def moves_mm(self) -> float:
+        """What was not determined matters where it moves a value by more: 1 µm, a tenth of a touch's scatter."""
+        return max(MOVES_MM, NOTICED * math.sqrt(self.variance_mm2))
 
     @property
     def estimated_mm2(self) -> float:
@@ -80,12 +91,15 @@ def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path) -> ReadingNoise
     encoder_rad = _encoders(stated.get("encoder_rad"), arm, path)
     seat_mm = _positive(stated, "seat_mm", "provenance.noise.seat_mm", path)
     estimated_mm = _positive(shown, "touch_mm", "fit.reading_scatter.touch_mm", path)
+    key = "parameter_degrees_of_freedom"
+    of_parameters = _positive(shown, key, f"fit.reading_scatter.{key}", path)
     freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
     return ReadingNoise(
         encoder_rad=None if encoder_rad is None else less * encoder_rad,
         seat_mm=estimated_mm if seat_mm is None else less * seat_mm,
         unexplained_mm=_positive(shown, "unexplained_mm", "fit.reading_scatter.unexplained_mm", path) or 0.0,
         degrees_of_freedom=math.inf if freedom is None else freedom,
+        parameter_freedom=math.inf if of_parameters is None else of_parameters,
         estimated=seat_mm is None and estimated_mm is not None,
     )
 

@@ -18,12 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.calibration.about import about_cross_validation
+from ulna.calibration.coverage import Coverage, Judged, judged
 from ulna.calibration.figures import over_groups, overall_figures
+from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.placements import FigureEntry, Figures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.result_file import CrossValidationFile, ProvenanceEntry
-from ulna.calibration.running import run_fit
+from ulna.calibration.running import run_assembled, run_fit
 from ulna.calibration.summary import GroupFigures
 from ulna.formats.output import output_folder
 from ulna.ground.arrays import Progress
@@ -50,6 +52,8 @@ class CrossValidation(Shown):
     """Over all groups: mean of the groups' means, root mean square of their rms, largest of their maxima."""
     after: Figures
     provenance: dict[str, Any]
+    coverage: Coverage | None = None
+    """Whether the uncertainties that each fit states hold on what was left out."""
 
     @property
     def converged(self) -> bool:
@@ -65,6 +69,7 @@ class CrossValidation(Shown):
             before=FigureEntry.model_construct(None, **self.before),
             after=FigureEntry.model_construct(None, **self.after),
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
+            coverage=self.coverage,
         ).model_dump(mode="json", exclude_unset=True)
 
     def about(self) -> About:
@@ -91,11 +96,13 @@ def cross_validate(
     """
     study = with_options(as_study(study), **overrides)
     how, left_out = folds(study, by)
-    groups = []
+    groups, held = [], []
     for number, fold in enumerate(left_out):
         if progress is not None:
             progress("groups left out", number, len(left_out))
-        groups.append(_judge(study, fold))
+        group, inside = _judge(study, fold)
+        groups.append(group)
+        held.append(inside)
     if progress is not None:
         progress("groups left out", len(left_out), len(left_out))
     return CrossValidation(
@@ -104,10 +111,12 @@ def cross_validate(
         before=over_groups(group.before for group in groups),
         after=over_groups(group.after for group in groups),
         provenance=provenance(study, datetime.now(UTC)),
+        coverage=Judged.together(held).coverage(),
     )
 
 
-def _judge(study: Study, fold: Fold) -> GroupFigures:
+def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged]:
+    """Of one group left out: its figures, and whether what the fit to the others states holds."""
     training = study.subset([~mask for mask in fold.masks])
     test = study.subset(fold.masks)
     given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
@@ -117,8 +126,8 @@ def _judge(study: Study, fold: Fold) -> GroupFigures:
         return hold_mask(study, names) | held
 
     try:
-        start_arm = assemble(training).arm
-        fitted = run_fit(training)
+        assembled = assemble(training)
+        start_arm, fitted = assembled.arm, run_assembled(training, assembled)
         # signs that nobody knows are those that were found
         start = run_fit(given.with_arm(given.arm.with_signs(fitted.arm.signs)), all_but_probes)
     except UlnaInputError as error:
@@ -127,7 +136,8 @@ def _judge(study: Study, fold: Fold) -> GroupFigures:
     of_arm = len(arm.parameter_names)
     before = overall_figures(arm.with_parameters(start.parameters[:of_arm]), test)
     after = overall_figures(arm.with_parameters(fitted.parameters[:of_arm]), test)
-    return GroupFigures(
+    found = FittedStudy(training, assembled, fitted, None, [], datetime.now(UTC), 0.0)
+    group = GroupFigures(
         group=fold.name,
         readings=fold.rows,
         before=before,
@@ -136,3 +146,4 @@ def _judge(study: Study, fold: Fold) -> GroupFigures:
         termination=fitted.termination,
         lost=[dict(direction) for direction in fitted.identifiability.lost],
     )
+    return group, judged(found.arm, found.noise, test)

@@ -14,8 +14,9 @@ import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
-from ulna.arm.given import ArmLike, as_arm
+from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.calibration.about import about_evaluation
+from ulna.calibration.coverage import Coverage, judged
 from ulna.calibration.figures import figures
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
@@ -48,6 +49,8 @@ class Evaluation(Shown):
     residuals: pl.DataFrame
     """One row per reading, columns as in `ulna.calibration.residuals.SCHEMA`."""
     provenance: dict[str, Any]
+    coverage: Coverage | None = None
+    """Whether the uncertainties that were stated of the arm hold; None of an arm of which none is known."""
 
     def as_dict(self) -> dict[str, Any]:
         """`evaluation.json`: JSON types only, no NaN."""
@@ -58,6 +61,7 @@ class Evaluation(Shown):
             artefacts=[entry.entry() for entry in self.artefacts],
             overall=FigureEntry.model_construct(None, **self.overall),
             fit=EvaluatedEntry.model_construct(readings=self.readings, rms_mm=self.rms_mm),
+            coverage=self.coverage,
             provenance=ProvenanceEntry.model_construct(None, **self.provenance),
         ).model_dump(mode="json", exclude_unset=True)
 
@@ -79,7 +83,7 @@ def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int],
     `arm`: an arm, a result, or a path of one; `study`: a study or its path. Raises UlnaInputError where the arm has
     another number of joints or lacks a probe that the readings use.
     """
-    arm, study = as_arm(arm), as_study(study)
+    (arm, noise), study = arm_and_noise(arm), as_study(study)
     # nothing of the arm is fitted, so what the study says of the fit does not matter
     fitting = dataclasses.replace(study_of_arm(study, arm), fit=FitOptions(seed=study.fit.seed))
     fitted = run_fit(fitting, lambda names: np.ones(len(names), dtype=bool), progress)
@@ -92,6 +96,7 @@ def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int],
         readings=sum(len(group) for group in study.readings),
         residuals=residual_table(fitting, fitted),
         provenance=provenance(study, datetime.now(UTC)),
+        coverage=None if arm.uncertainty is None else judged(arm, noise, fitting).coverage(),
     )
 
 

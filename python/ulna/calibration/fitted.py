@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -15,6 +16,8 @@ import polars as pl
 import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.reading_noise import ReadingNoise, noise_of
+from ulna.calibration.between_places import BetweenPlaces, between_places
 from ulna.calibration.estimators import Searched
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
@@ -22,10 +25,10 @@ from ulna.calibration.identify import Identification
 from ulna.calibration.outliers import outliers
 from ulna.calibration.placements import Figures
 from ulna.calibration.poses import PlacementPose, placement_poses
-from ulna.calibration.provenance import provenance
+from ulna.calibration.provenance import provenance, stated_noise
 from ulna.calibration.reading_scatter import reading_scatter
 from ulna.calibration.residuals import residual_table
-from ulna.calibration.summary import FitSummary, Parameter, Status, Unit
+from ulna.calibration.summary import FitSummary, Parameter, ReadingScatter, Status, Unit
 from ulna.study.assembly import Assembled
 from ulna.study.study import Study
 
@@ -44,12 +47,26 @@ class FittedStudy:
     seconds: float
     """What it all took."""
 
+    @property
+    def arm(self) -> Arm:
+        """The fitted one, with its uncertainty."""
+        return dataclasses.replace(self._arm, uncertainty=self._covariance.of(self.assembled.arm.parameter_names))
+
+    @property
+    def noise(self) -> ReadingNoise:
+        """How its readings scatter."""
+        stated, shown = self.study.noise, self._reading_scatter
+        return noise_of(
+            None if stated is None else stated_noise(stated),
+            None if shown is None else dataclasses.asdict(shown),
+            self._arm,
+            Path("result"),
+        )
+
     def parts(self) -> dict[str, Callable[[], Any]]:
         """A function for each field of `ulna.calibration.result.Result`."""
         return {
-            "arm": lambda: dataclasses.replace(
-                self._arm, uncertainty=self._covariance.of(self.assembled.arm.parameter_names)
-            ),
+            "arm": lambda: self.arm,
             "parameters": self._parameters,
             "covariance": lambda: self._covariance,
             "identifiability": lambda: self._identification,
@@ -112,13 +129,21 @@ class FittedStudy:
             loss=study.fit.loss,
             signs_found=self._signs_found(),
             box_evaluations=0 if self.searched is None else self.searched.evaluations,
-            reading_scatter=reading_scatter(self.core, study),
+            reading_scatter=self._reading_scatter,
             scatter={group.artefact.name: scale for group, scale in zip(study.readings, self.core.scales, strict=True)},
         )
 
     def _signs_found(self) -> dict[str, int]:
         found = zip(self.study.arm.unknown_signs.tolist(), self.core.arm.signs.tolist(), strict=True)
         return {f"joint.{k}.sign": int(sign) for k, (unknown, sign) in enumerate(found, 1) if unknown}
+
+    @cached_property
+    def _between(self) -> BetweenPlaces | None:
+        return between_places(self.assembled, self.core)
+
+    @cached_property
+    def _reading_scatter(self) -> ReadingScatter | None:
+        return reading_scatter(self.core, self.study, self._between)
 
     @cached_property
     def _covariance(self) -> ParameterCovariance:
@@ -128,19 +153,20 @@ class FittedStudy:
         grows by S C_held Sᵀ and the two are correlated by S C_held (consider covariance, Schmidt 1966).
         """
         fitted = self.core
+        of_fitted = fitted.covariance * (1.0 if self._between is None else self._between.factor**2)
         names, hold = self.assembled.names, self.assembled.hold
         fitted_names = [names[column] for column in fitted.covariance_columns]
         lost = [dict(direction) for direction in self._identification.lost]
         known = self.study.arm.uncertainty
         kept = [k for k, name in enumerate(known.names) if hold[names.index(name)]] if known is not None else []
         if known is None or not kept:
-            return ParameterCovariance(fitted_names, fitted.covariance, lost)
+            return ParameterCovariance(fitted_names, of_fitted, lost)
         held_names = [known.names[k] for k in kept]
         held = known.matrix[np.ix_(kept, kept)]
         columns = np.array([names.index(name) for name in held_names], dtype=np.int64)
         follow = _core.held_sensitivity(self.assembled.problem, hold, fitted, columns)
         both = follow @ held
-        matrix = np.block([[fitted.covariance + both @ follow.T, both], [both.T, held]])
+        matrix = np.block([[of_fitted + both @ follow.T, both], [both.T, held]])
         earlier = [dict(direction) for direction in known.lost if set(direction["combination"]) & set(held_names)]
         return ParameterCovariance(fitted_names + held_names, matrix, lost + earlier)
 

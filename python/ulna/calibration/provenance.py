@@ -7,6 +7,7 @@ from datetime import datetime
 from typing import Any
 
 from ulna.ground.version import VERSION
+from ulna.study.data import Noise
 from ulna.study.study import Study
 
 
@@ -14,13 +15,7 @@ def provenance(study: Study, when: datetime, seconds: float | None = None) -> di
     """Program version, input files with SHA-256, which rows where there is a split, options, noise, seed, time; JSON
     types only."""
     options = dataclasses.asdict(study.fit)
-    noise: dict[str, Any] | None = None
-    if study.noise is not None:
-        encoder_rad = study.noise.encoder_rad
-        noise = {
-            "encoder_rad": None if encoder_rad is None else encoder_rad.tolist(),
-            "seat_mm": study.noise.seat_mm,
-        }
+    noise = None if study.noise is None else stated_noise(study.noise)
     return {
         "program": "ulna",
         "version": VERSION,
@@ -34,3 +29,9 @@ def provenance(study: Study, when: datetime, seconds: float | None = None) -> di
         "time": when.isoformat(timespec="seconds"),
         **({} if seconds is None else {"duration_s": round(seconds, 6)}),
     }
+
+
+def stated_noise(noise: Noise) -> dict[str, Any]:
+    """As results have it."""
+    encoder_rad = noise.encoder_rad
+    return {"encoder_rad": None if encoder_rad is None else encoder_rad.tolist(), "seat_mm": noise.seat_mm}

@@ -3,43 +3,49 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 import ulna._core as _core
 from ulna.artefacts.readings import Readings
+from ulna.calibration.between_places import BetweenPlaces
 from ulna.calibration.summary import ReadingScatter
 from ulna.ground.arrays import F64
 from ulna.study.study import Study
 
 
-def reading_scatter(core: _core.Fitted, study: Study) -> ReadingScatter | None:
+def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | None) -> ReadingScatter | None:
     """From the scatter of whitened residuals over their degrees of freedom; None where none are left.
 
     With stated noise the variance factor s² (1 where chi² does not contradict it) makes the readings' variance s² times
     the stated one; what is more, (s² - 1) times the stated variance of a tip coordinate, averaged over the readings,
-    the model does not explain. With a loss the scatter is that of the readings that count, from their median.
+    the model does not explain.
     """
-    variance = core.variance if study.fit.loss == "none" else _of_those_that_count(core, study)
+    variance = core.variance
     if not math.isfinite(variance) or variance < 0.0:
         return None
     groups = list(enumerate(study.readings))
+    freedom = core.degrees_of_freedom if core.estimated else math.inf
+    elsewhere = (
+        freedom
+        if between is None or not (core.estimated or between.factor > 1.0)
+        else min(freedom, between.degrees_of_freedom)
+    )
+    shown = ReadingScatter(
+        degrees_of_freedom=None if math.isinf(freedom) else freedom,
+        places=None if between is None else between.places,
+        place_factor=None if between is None else between.factor,
+        parameter_degrees_of_freedom=None if math.isinf(elsewhere) else elsewhere,
+    )
     if study.noise is None:
         ends = sum(len(group) * _ends(group) for _, group in groups) / sum(len(group) for _, group in groups)
-        return ReadingScatter(touch_mm=math.sqrt(variance / ends), degrees_of_freedom=core.degrees_of_freedom)
+        return replace(shown, touch_mm=math.sqrt(variance / ends))
     if not core.estimated:
-        return ReadingScatter(factor=1.0)
+        return replace(shown, factor=1.0)
     stated_mm2 = np.concatenate([_stated_mm2(core, number, group) for number, group in groups])
     more_mm2 = max(variance - 1.0, 0.0) * float(np.mean(stated_mm2[np.isfinite(stated_mm2)]))
-    return ReadingScatter(
-        factor=math.sqrt(variance), unexplained_mm=math.sqrt(more_mm2), degrees_of_freedom=core.degrees_of_freedom
-    )
-
-
-def _of_those_that_count(core: _core.Fitted, study: Study) -> float:
-    """Variance of a whitened residual from the medians of the groups, by their numbers."""
-    counts = [len(group) for group in study.readings]
-    return float(np.average(np.square(core.scales), weights=counts)) if core.degrees_of_freedom else math.nan
+    return replace(shown, factor=math.sqrt(variance), unexplained_mm=math.sqrt(more_mm2))
 
 
 def _ends(group: Readings) -> int:

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from ulna.arm.joint_file import JointTable
 from ulna.arm.tables import CartesianTip
+from ulna.calibration.coverage import Coverage
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import FigureEntry, PlacementEntry
@@ -147,6 +148,8 @@ class EvaluationFile(Open):
     """Over all readings together."""
     fit: EvaluatedEntry | None = None
     provenance: ProvenanceEntry | None = None
+    coverage: Coverage | None = None
+    """Whether the uncertainties that were stated of the arm hold."""
 
 
 class CrossValidationFile(Open):
@@ -160,3 +163,5 @@ class CrossValidationFile(Open):
     """The mean of the groups' figures."""
     after: FigureEntry
     provenance: ProvenanceEntry | None = None
+    coverage: Coverage | None = None
+    """Whether the uncertainties that each fit states hold on what was left out."""

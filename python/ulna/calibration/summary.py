@@ -48,6 +48,13 @@ class ReadingScatter:
     not explain."""
     degrees_of_freedom: float | None = None
     """Of these figures; None where the stated noise stands."""
+    places: int | None = None
+    """Standings of artefacts of which each was left out to see how the arm errs elsewhere; None where there is one."""
+    place_factor: float | None = None
+    """By what errors in a place left out exceed what the scatter within places makes of them: parameters' uncertainties
+    are multiplied by it. 1 where chance explains it."""
+    parameter_degrees_of_freedom: float | None = None
+    """Of the parameters' uncertainties; None where all that they rest on was stated."""
 
 
 @dataclass(frozen=True)

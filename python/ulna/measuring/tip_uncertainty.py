@@ -30,10 +30,6 @@ WHOLE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
-MOVES_MM = 1e-3
-"""A lost direction matters at a pose where a step along it moves the tip by more than this, mm: a step as large as a
-drawing leaves open (`ulna.arm.directions.DRAWN`)."""
-
 
 class TipUncertainty:
     """Standard uncertainties of tip coordinates of a calibrated arm; collects notes on what it cannot say."""
@@ -44,7 +40,7 @@ class TipUncertainty:
         self._core = arm.core
         self._probe_names = list(arm.probes)
         self._covariances = [_covariance(arm, name, noise.encoder_rad) for name in arm.probes]
-        self._own_mm2 = noise.variance_mm2
+        self._own_mm2, self._moves_mm = noise.variance_mm2, noise.moves_mm
         self._estimated = bool(np.isfinite(arm.uncertainty.matrix).all())
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
         index = {name: k for k, name in enumerate(arm.parameter_names)}
@@ -76,7 +72,7 @@ class TipUncertainty:
 
         found = np.concatenate([np.empty((0, 6)), *self._pool.map(block, range(0, len(q_rad), _BLOCK_ROWS))])
         if self._lost:
-            moved = self._effect_mm(q_rad, probe, conditions, self._directions) > MOVES_MM
+            moved = self._effect_mm(q_rad, probe, conditions, self._directions) > self._moves_mm
             if moved.any():
                 found[moved] = np.nan
                 self._tell_which(q_rad[moved], probe, some_of(conditions, moved))
@@ -95,7 +91,7 @@ class TipUncertainty:
         for row in range(len(self._lost)):
             if (row, probe) in self._told:
                 continue
-            if (self._effect_mm(q_rad, probe, conditions, self._directions[row : row + 1]) > MOVES_MM).any():
+            if (self._effect_mm(q_rad, probe, conditions, self._directions[row : row + 1]) > self._moves_mm).any():
                 self._told[row, probe] = None
 
     @property

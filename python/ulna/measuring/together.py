@@ -13,10 +13,9 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions, some_of
-from ulna.arm.directions import steps
+from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64, I64, Bool
-from ulna.measuring.tip_uncertainty import MOVES_MM
 
 
 @dataclass(frozen=True)
@@ -91,15 +90,5 @@ class Together:
     def _moved(self, by_parameter: F64) -> Bool:
         """(m,) which of m values move by more than is nothing where a direction that was not determined goes as far as
         a drawing leaves open; those of the base frame do not count. by_parameter (m, parameters): derivatives, mm."""
-        known = self.arm.uncertainty
-        assert known is not None
-        names = self.arm.parameter_names
-        found: Bool = np.zeros(len(by_parameter), dtype=bool)
-        for direction in known.lost:
-            if direction.get("frame", False):
-                continue
-            weights = direction["combination"]
-            most = max(steps(weights).values())
-            moved = sum(by_parameter[:, names.index(name)] * weight for name, weight in weights.items()) / most
-            found |= np.abs(moved) > MOVES_MM
-        return found
+        moved = np.abs(by_parameter @ lost_steps(self.arm).T)
+        return np.asarray((moved > self.noise.moves_mm).any(axis=1))

@@ -181,7 +181,7 @@ def assess(
         good = agrees(y, k * u, trial, task.digits)[0] if trial is not None and trial.settled else None
         values.append(Value(name, unit, y, u, k * u, k, budget, trial, good, []))
     source = "performance" if arms is not None else "covariance" if study is None else "recalibrations"
-    point = task.touched.kind == "point" and all(determined) and math.isinf(task.noise.degrees_of_freedom)
+    point = task.touched.kind == "point" and all(determined) and math.isinf(task.noise.parameter_freedom)
     return Assessment(
         kind=task.touched.kind,
         probe=task.probe,
@@ -218,14 +218,15 @@ def check_known(arm: Arm) -> ParameterCovariance:
 
 def _degrees_of_freedom(budget: dict[str, float], task: Task) -> float:
     """Effective ones of a value: what the calibration estimated, beside what was stated."""
-    freedom = task.noise.degrees_of_freedom
-    if math.isinf(freedom) or not any(budget.values()):
-        return math.inf
-    # all that the residuals showed is one estimate, of which each takes its multiple
-    shown = {"parameters", "unexplained"} | ({"touch"} if task.noise.estimated else set())
-    one = math.hypot(*(u for source, u in budget.items() if source in shown))
-    rest = [u for source, u in budget.items() if source not in shown]
-    return effective_degrees_of_freedom(np.array([one, *rest]), np.array([freedom, *([math.inf] * len(rest))]))
+    noise = task.noise
+    of = {"parameters": noise.parameter_freedom, "unexplained": noise.degrees_of_freedom}
+    of |= {"touch": noise.degrees_of_freedom} if noise.estimated else {}
+    # what rests on one estimate is one contribution: its parts grow and shrink together
+    together: dict[float, float] = {}
+    for source, u in budget.items():
+        freedom = of.get(source, math.inf)
+        together[freedom] = math.hypot(together.get(freedom, 0.0), u)
+    return effective_degrees_of_freedom(np.array(list(together.values())), np.array(list(together)))
 
 
 def _simulated(
@@ -261,7 +262,7 @@ def _from_covariance(arm: Arm, task: Task, seed: int) -> Sets:
 
     def sets(first: int, count: int) -> F64:
         off: F64 = in_blocks(first, count, seed, 2, mean.shape) @ root.T
-        return mean + off * task.inflated(first, count, seed)[:, None]
+        return mean + off * task.inflated(task.noise.parameter_freedom, first, count, seed)[:, None]
 
     return sets
 

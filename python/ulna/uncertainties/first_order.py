@@ -10,14 +10,13 @@ from ulna.arm.arm import Arm
 from ulna.arm.directions import drawn, steps
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.uncertainties.gum import propagate
 from ulna.uncertainties.task import Task
 
 NOTHING_MM = 1e-3
 """A length of no more is none: its ends are nearer than the steps of its derivatives."""
-MOVES = {"mm": MOVES_MM, "1": 1e-5}
-"""A lost direction matters that moves a value by more, by its unit."""
+MOVES = 1e-5
+"""A lost direction matters that moves a plain number by more; a length, by what its touches are sure of."""
 LARGEST = 100.0
 """Derivative of a value by a touch that is beyond all sense, mm per mm."""
 STEP_K = 0.01
@@ -78,7 +77,7 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
         by_kelvin = ((change[0] - change[1]) / (2.0 * STEP_K))[:, None]
         sources["temperature"] = propagate(by_kelvin, np.array([[task.u_temperature_k**2]]))
     values = task.values(arm, tips_mm[None])[0]
-    moves = np.array([MOVES[unit] for unit in task.touched.measurand.units.values()])
+    moves = np.array([noise.moves_mm if unit == "mm" else MOVES for unit in task.touched.measurand.units.values()])
     return FirstOrder(values, sources, _open(arm, by_parameter, moves), _exact(arm, by_parameter, moves))
 
 

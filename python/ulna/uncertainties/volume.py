@@ -17,7 +17,6 @@ from ulna.ground.arrays import F64, Progress
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.quantiles import normal, student
 from ulna.ground.shown import About, Shown, Table
-from ulna.measuring.tip_uncertainty import MOVES_MM
 from ulna.simulation.mover import Mover
 from ulna.simulation.places import Standing, places
 from ulna.uncertainties.assess import check_known
@@ -196,8 +195,8 @@ class Account:
         for start in range(0, len(q_rad), BLOCK):
             q = np.ascontiguousarray(q_rad[start : start + BLOCK])
             # all coordinates of a point in a row: their variances are summed
-            shown, others = self._variances(q, np.broadcast_to(np.eye(3), (len(q), 3, 3))[:, :, None])
-            parts.append(np.sqrt((shown + others).sum(axis=1)))
+            sources = self._variances(q, np.broadcast_to(np.eye(3), (len(q), 3, 3))[:, :, None])
+            parts.append(np.sqrt(np.sum(sources, axis=0).sum(axis=1)))
         return np.concatenate(parts)
 
     def of_lengths(self, q_rad: F64) -> tuple[F64, F64]:
@@ -209,24 +208,24 @@ class Account:
             ends = self._arm.tip(flat, self._task.probe, self._task.temperature_c).reshape(-1, 2, 3)
             along = ends[:, 1] - ends[:, 0]
             along = along / np.linalg.norm(along, axis=1, keepdims=True)
-            shown, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
-            variance = (shown + others)[:, 0]
+            parameters, estimated, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
+            variance = (parameters + estimated + others)[:, 0]
             us.append(np.sqrt(variance))
-            expanded.append(us[-1] * self._k(shown[:, 0], variance))
+            expanded.append(us[-1] * self._k(parameters[:, 0], estimated[:, 0], variance))
         return np.concatenate(us), np.concatenate(expanded)
 
-    def _variances(self, q_rad: F64, by_tip: F64) -> tuple[F64, F64]:
+    def _variances(self, q_rad: F64, by_tip: F64) -> tuple[F64, F64, F64]:
         """(M K, n) poses, K to a value, and (M, values, K, 3) derivatives of the values by the tips: variances
-        (M, values) from what the residuals showed, the parameters first of all (NaN where they are open), and from the
+        (M, values) from the parameters (NaN where they are open), from what residuals showed of touches, from the
         rest."""
         arm, task = self._arm, self._task
         count, values, each, _ = by_tip.shape
         moved = arm.jacobian(q_rad, task.probe, task.temperature_c).reshape(count, each, 3, -1)
         rows = np.einsum("mvkj,mkjp->mvp", by_tip, moved)
         if len(self._held):
-            self._matters |= np.abs(rows[:, :, self._held]).max(axis=(0, 1)) * self._drawn > MOVES_MM
+            self._matters |= np.abs(rows[:, :, self._held]).max(axis=(0, 1)) * self._drawn > task.noise.moves_mm
         parameters: F64 = np.einsum("mvp,mvp->mv", rows @ self._covariance, rows)
-        away = np.abs(rows @ self._directions.T) > MOVES_MM
+        away = np.abs(rows @ self._directions.T) > task.noise.moves_mm
         if away.any():
             self.open |= {self._lost[row] for row in np.flatnonzero(away.any(axis=(0, 1))).tolist()}
             parameters[away.any(axis=2)] = np.nan
@@ -236,22 +235,26 @@ class Account:
             turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), **at).reshape(count, each, 3, -1)
             others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.noise.encoder_rad) ** 2).sum(axis=(2, 3))
         by_touch = (by_tip**2).sum(axis=(2, 3))
-        shown = parameters + task.noise.estimated_mm2 * by_touch
+        estimated = task.noise.estimated_mm2 * by_touch
         others += task.noise.stated_mm2 * by_touch
         if task.u_temperature_k and task.temperature_c is not None:
             warm, cold = (arm.tip(q_rad, task.probe, task.temperature_c + step) for step in (STEP_K, -STEP_K))
             by_kelvin = ((warm - cold) / (2.0 * STEP_K)).reshape(count, each, 3)
             others += (np.einsum("mvkj,mkj->mv", by_tip, by_kelvin) * task.u_temperature_k) ** 2
-        return shown, others
+        return parameters, estimated, others
 
-    def _k(self, shown: F64, variance: F64) -> F64:
+    def _k(self, parameters: F64, estimated: F64, variance: F64) -> F64:
         """(M,) coverage factors: Student's where the calibration estimated its noise (GUM G.4.1), else normal."""
         upper = 0.5 * (1.0 + self._task.p)
-        freedom = self._task.noise.degrees_of_freedom
-        if math.isinf(freedom):
+        noise = self._task.noise
+        if math.isinf(noise.parameter_freedom) and math.isinf(noise.degrees_of_freedom):
             return np.full(len(variance), normal(upper))
         with np.errstate(divide="ignore", invalid="ignore"):
-            effective = freedom * (variance / shown) ** 2
+            if noise.parameter_freedom == noise.degrees_of_freedom:  # one estimate
+                below = (parameters + estimated) ** 2 / noise.degrees_of_freedom
+            else:
+                below = parameters**2 / noise.parameter_freedom + estimated**2 / noise.degrees_of_freedom
+            effective = variance**2 / below
         k: F64 = np.full(len(variance), normal(upper))
         some = np.isfinite(effective)
         k[some] = student(effective[some], upper)

@@ -51,7 +51,7 @@ pub struct Fitted {
     pub placement_unknowns: usize,
     /// Equations minus all that they determined: what is known beforehand takes none.
     pub degrees_of_freedom: f64,
-    /// Cost over degrees of freedom, where noise is stated; with a loss, the scatter of the readings squared.
+    /// The variance of a whitened residual as the residuals show it, where noise is stated.
     pub chi2_per_dof: Option<f64>,
     /// Of a whitened residual, by which the covariance was made: 1 where noise is stated and the readings do not contradict it.
     pub variance: f64,

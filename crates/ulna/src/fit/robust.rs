@@ -80,6 +80,12 @@ impl Standing {
         self.lengths[group].iter().zip(&self.dimensions[group]).map(|(&t, &d)| t > rare_length(d))
     }
 
+    /// The share of the equations, placements taken off, that the fitted parameters take.
+    pub fn fitted(whitened: &[Whitened], degrees_of_freedom: f64) -> f64 {
+        let count: f64 = whitened.iter().flat_map(|group| &group.freedoms).sum();
+        (1.0 - degrees_of_freedom / count).clamp(0.0, 1.0 - LEAST_LEFT)
+    }
+
     /// The variance of a whitened residual that gives a robust fit its covariance, `c² E[ψ²] (1 - κ) / κ²`, where the fitted
     /// parameters have the share κ of the equations, and `E[1 / (1 + c ψ')] = 1 - κ` says c: right however many parameters
     /// there are for each equation, as both grow (Bean, Bickel, El Karoui and Yu 2013). With least squares `c = κ / (1 - κ)`
@@ -97,7 +103,7 @@ impl Standing {
                 slopes.push((freedom / d, across + slope));
             }
         }
-        let fitted = (1.0 - degrees_of_freedom / count).clamp(0.0, 1.0 - LEAST_LEFT);
+        let fitted = Standing::fitted(whitened, degrees_of_freedom);
         let mean = |of: &dyn Fn(f64) -> f64| slopes.iter().map(|(weight, slope)| weight * of(*slope)).sum::<f64>() / count;
         // c over κ: for next to no parameters the limit
         let per_fitted = if fitted < FEW { mean(&|slope| slope).recip() } else { shift(fitted, &mean) / fitted };

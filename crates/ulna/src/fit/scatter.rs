@@ -82,7 +82,7 @@ const LEAST_FREEDOM: f64 = 1e-3;
 pub(crate) struct Shown {
     /// Equations less what placements and parameters have taken of them.
     pub degrees_of_freedom: f64,
-    /// Sum of squares for each; with a loss, the scatter of the readings squared. None where none is left.
+    /// Sum of squares for each; with a loss, of what it makes of residuals. None where none is left.
     pub per_dof: Option<f64>,
     /// The variance of a whitened residual; NaN where nothing tells.
     pub variance: f64,
@@ -107,6 +107,10 @@ impl Shown {
 const ROUNDS: usize = 50;
 const MET: f64 = 1e-9;
 
+/// With a loss, beyond this share of fitted parameters among the equations nobody can tell outliers from readings that the fit
+/// has not followed: in simulations 95 % intervals then hold the truth less than 92 times in 100.
+const MOST_FITTED: f64 = 0.4;
+
 /// The scatter at the end of a fit, and how each reading stands; `judged` is then what the readings determine, what is known
 /// beforehand weighed by that scatter.
 ///
@@ -127,9 +131,9 @@ pub(crate) fn at_minimum(
     let mut shown = Shown::of(Scatter::of(problem, free, judged, parameters, unit), stated);
     let standing = Standing::of(whitened, shown.degrees_of_freedom, least);
     if let (Some(loss), Some(_)) = (problem.loss(), shown.per_dof) {
+        let told = Standing::fitted(whitened, shown.degrees_of_freedom) <= MOST_FITTED;
         let variance = standing.variance(whitened, loss, shown.degrees_of_freedom);
-        let per_dof = Some(standing.pooled_scale(whitened).powi(2));
-        shown = Shown { per_dof, variance, estimated: true, ..shown };
+        shown = Shown { per_dof: Some(variance), variance: if told { variance } else { f64::NAN }, estimated: true, ..shown };
     }
     for _ in 0..ROUNDS {
         let next = shown.variance.sqrt().max(least);

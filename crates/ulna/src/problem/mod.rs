@@ -10,4 +10,4 @@ mod parameters;
 mod rows;
 
 pub use groups::Problem;
-pub use rows::{WhitenedRows, whitened_rows};
+pub use rows::{WhitenedRows, rows_at, whitened_rows};

@@ -12,6 +12,8 @@ use crate::solver::{RowBlock, RowSink};
 pub struct WhitenedRows {
     /// Row-major over the free parameters, standing by standing.
     pub rows: Vec<f64>,
+    /// The residual of each.
+    pub residuals: Vec<f64>,
     /// Which standing each row is of: counted as they first come in each group of readings, group after group; of readings
     /// that stand nowhere, or whose place is known, each is one.
     pub standing: Vec<u32>,
@@ -28,6 +30,14 @@ pub fn whitened_rows(problem: &mut Problem, free: &[usize], monitor: &dyn Monito
     }
     let parameters = problem.parameters();
     problem.weigh(&parameters, Weighing::Full);
+    rows_at(problem, free, &parameters, monitor)
+}
+
+/// The same at other parameters, weighed as the readings are.
+///
+/// # Errors
+/// Interrupted.
+pub fn rows_at(problem: &Problem, free: &[usize], parameters: &[f64], monitor: &dyn Monitor) -> Result<WhitenedRows> {
     let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
     let mut sink = Kept { unknowns: free.len(), kept: WhitenedRows::default() };
     Assembly::new(problem, free, &[], monitor).rows_of_standings(&x, &mut sink)?;
@@ -44,6 +54,7 @@ impl WhitenedRows {
         order.sort_by_key(|&row| self.standing[row]);
         WhitenedRows {
             rows: order.iter().flat_map(|&row| &self.rows[row * unknowns..(row + 1) * unknowns]).copied().collect(),
+            residuals: order.iter().map(|&row| self.residuals[row]).collect(),
             standing: order.iter().map(|&row| self.standing[row]).collect(),
         }
     }
@@ -66,6 +77,8 @@ impl RowSink for Kept {
             let own = self.kept.rows[first..].iter_mut().skip(unknown).step_by(self.unknowns);
             own.zip(&rows).for_each(|(own, &row)| *own = values[row]);
         }
+        let residuals = block.columns.column(block.residual);
+        self.kept.residuals.extend(rows.iter().map(|&row| residuals[row]));
         self.kept.standing.extend(rows.iter().map(|&row| block.standing[row]));
     }
 }
