@@ -5,8 +5,8 @@ there are fewer independent errors than readings, and parameters are known less 
 of one standing left out show it. With rows J of a standing, what its placement explains taken off, residuals r of the
 whole fit and H = J C Jᵀ (C of the parameters, for readings of unit variance), the fit to the others leaves
 e = (I - H)⁻¹ r, and expects its covariance to be I + J C' Jᵀ = (I - H)⁻¹, C' without the standing. Along an eigenvector
-of H with h < 1 the variance of e is then 1 + g² h / (1 - h), where g² is by what the parameters' covariance is too small:
-the maximum of the likelihood of all standings says g², and its ratio to that of g = 1 whether chance explains it.
+of H with h < 1 the variance of e is then 1 + g² h / (1 - h), where g² is by what the parameters' covariance is too
+small: the maximum of the likelihood of all standings says g², and its ratio to that of g = 1 whether chance does it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ ALONE = 0.9999
 SIGNIFICANT = 6.63
 """Twice the logarithm of the likelihoods' ratio that chance exceeds in one of a hundred."""
 FEW = 3
-"""So few places do not show how an arm errs in another one."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +41,9 @@ class BetweenPlaces:
     explains it."""
 
     @property
-    def degrees_of_freedom(self) -> float:
-        """Of the parameters' uncertainties: the places, where their number tells; else infinite."""
-        return float(self.places) if self.factor > 1.0 or self.places <= FEW else np.inf
+    def few(self) -> bool:
+        """Whether so few places show neither how an arm errs in another one, nor how it scatters there."""
+        return self.places <= FEW
 
 
 def between_places(assembled: Assembled, fitted: _core.Fitted) -> BetweenPlaces | None:

@@ -26,12 +26,7 @@ def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | N
     if not math.isfinite(variance) or variance < 0.0:
         return None
     groups = list(enumerate(study.readings))
-    freedom = core.degrees_of_freedom if core.estimated else math.inf
-    elsewhere = (
-        freedom
-        if between is None or not (core.estimated or between.factor > 1.0)
-        else min(freedom, between.degrees_of_freedom)
-    )
+    freedom, elsewhere = _freedom(core, between)
     shown = ReadingScatter(
         degrees_of_freedom=None if math.isinf(freedom) else freedom,
         places=None if between is None else between.places,
@@ -46,6 +41,16 @@ def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | N
     stated_mm2 = np.concatenate([_stated_mm2(core, number, group) for number, group in groups])
     more_mm2 = max(variance - 1.0, 0.0) * float(np.mean(stated_mm2[np.isfinite(stated_mm2)]))
     return replace(shown, factor=math.sqrt(variance), unexplained_mm=math.sqrt(more_mm2))
+
+
+def _freedom(core: _core.Fitted, between: BetweenPlaces | None) -> tuple[float, float]:
+    """Degrees of freedom of the scatter, and of the parameters' uncertainties; infinite of what was stated."""
+    freedom = core.degrees_of_freedom if core.estimated else math.inf
+    if between is None:
+        return freedom, freedom
+    if core.estimated and between.few:  # one of them may be unlike the next in either
+        return min(freedom, between.places), min(freedom, between.places)
+    return freedom, min(freedom, between.places) if between.factor > 1.0 else freedom
 
 
 def _ends(group: Readings) -> int:
