@@ -82,6 +82,11 @@ class Header(ABC):
         """Of what a column was made, where that may surprise: "'q' is 7 × 500"; else ""."""
         return ""
 
+    @property
+    def further(self) -> str:
+        """Where more of the file is, which was not read, as a sentence with a blank before it; else ""."""
+        return ""
+
     def find(self, name: str) -> str | None:
         """The column that is meant by the file's own name or by Ulna's; the file's own names go first."""
         own = [column for column in self.columns if self.own(column) == name]

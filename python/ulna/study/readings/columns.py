@@ -103,6 +103,7 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
             else f"{origin}: expected numbers, one row for each reading. Write it so, or name the right arm."
             if origin
             else "Map the file's columns with the key 'columns', name the right arm, or correct the header."
+            + header.further
         )
     )
 
