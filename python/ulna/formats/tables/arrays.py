@@ -102,6 +102,10 @@ class ArrayTable(Header):
         remark = f"{path}: not read: what is in {told}."
         return cls(path, names, parts=dict(columns), what=what, remarks=[remark], further=f" There is more in {told}.")
 
+    def counted(self) -> int | None:
+        lengths = {self.parts[self.own(name)].length for name in self.columns if name.startswith("q")}
+        return lengths.pop() if len(lengths) == 1 else None
+
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         parts = {name: self.parts[self.own(name)] for name in columns}
         for name, part in parts.items():
