@@ -6,12 +6,12 @@ The first bytes say what most of them are. Prose has no mark of its own: lines i
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
 from ulna.formats.encodings import utf16
-from ulna.formats.spelling import looks_numeric
+from ulna.formats.spelling import looks_numeric, sexagesimal
 from ulna.ground.errors import UlnaInputError
 
 _EXPORT = "Export the table itself as CSV or .xlsx."
@@ -85,18 +85,28 @@ def refuse_foreign(path: Path, start: bytes, what: str) -> None:
             raise UlnaInputError(f"{path}: this is {each.name}, and no table; expected {what}. {each.remedy}")
 
 
-def is_prose(start: bytes) -> bool:
-    """Whether a text has lines, and next to none of them holds a number in a cell."""
+def is_prose(start: bytes, names: Collection[str] = ()) -> bool:
+    """Whether a text has lines, and next to none of them holds a number in a cell; names: columns that make it a table
+    all the same, whose cells are bad."""
     text = start.decode(utf16(start) or "utf-8", errors="replace")
     lines = [line for line in text.splitlines() if line.strip()][:_LINES]
+    if any(cell in names or cell.casefold() in names for line in lines for cell in _cells(line)):
+        return False
     return len(lines) > 1 and sum(map(_has_number, lines)) < _LEAST * len(lines)
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip().strip("\"'") for cell in re.split(r"[,;\t|]", line)]
 
 
 def _has_number(line: str) -> bool:
     """Of cells between signs, any; of words between blanks, every second: prose has numbers too."""
-    cells = [cell.strip().strip("\"'") for cell in re.split(r"[,;\t|]", line)]
     words = line.split()
-    return any(map(looks_numeric, cells)) or 2 * sum(map(looks_numeric, words)) >= len(words)
+    return any(map(_is_number, _cells(line))) or 2 * sum(map(_is_number, words)) >= len(words)
+
+
+def _is_number(cell: str) -> bool:
+    return looks_numeric(cell) or sexagesimal(cell) is not None
 
 
 def prose(path: Path, what: str) -> UlnaInputError:

@@ -36,15 +36,15 @@ def read_header(
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     refuse_foreign(path, start, what)
-    words = layout.header is True and is_text(start) and is_prose(start)
+    names = {*(known or ()), *layout.columns.values()}
+    words = layout.header is True and is_text(start) and is_prose(start, names)
     try:
         header = open_table(path, start, what, layout)
     except UlnaInputError:
         if words:
             raise prose(path, what) from None
         raise
-    there = {each for name in header.columns for each in (name, name.casefold())}
-    if words and not there & {*(known or ()), *layout.columns.values()}:
+    if words:
         raise prose(path, what)
     return named_header(header, layout, known or [])
 
