@@ -143,6 +143,7 @@ def test_what_goes_beyond_geometry_fits_the_terminal(
     words = " ".join(text.split())
     assert "x, y and z may be mirror-imaged" in words
     assert "its mirror image, in which joints 1, 3, 5 and 7 count the other way" in words
+    assert "To decide, turn joint 1, 3, 5 or 7 counter-clockwise" in words
     assert "The same arm, written differently: joint 2 counts the other way." in words
     assert "simulated annealing of the box around the arm file (100000 evaluations)" in words
     assert "Far off the rest: 12 of 101 readings" in words

@@ -147,7 +147,7 @@ def test_a_makers_table_with_parallel_axes(tmp_path: Path) -> None:
     (remark,) = found.remarks
     says(remark, "Hayati joints", "parallel: 2, 3", "the arm is the same")
     text = (tmp_path / "ur10.toml").read_text()
-    assert text.startswith(f"# Made of ur10.csv, convention dh.\n# {remark}\nformat")
+    assert text.startswith(f"# Made of ur10.csv, convention dh. {found.taken}\n# {remark}\nformat")
 
 
 def test_an_offset_is_theta0_the_other_way(tmp_path: Path) -> None:
@@ -195,7 +195,6 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "a joint behind the tip": ("tip,ball,1,0,0,5,60\n", "tip,ball,1,0,0,5,60\n3,x,1,0,0,0,0\n", ("behind a tip",)),
     "a tip twice": ("60\n", "60\ntip,ball,1,0,0,5,70\n", ("row 4", "column 'name'", "'ball' again")),
     "a tip's name": ("tip,ball", "tip,a.b", ("'a.b'", "cannot be used", "Rename it")),
-    "semicolons": (GOOD, GOOD.replace(",", ";"), ("separated by semicolons", "commas")),
     "nothing": (GOOD, "", ("the file is empty", "a table of Denavit–Hartenberg parameters")),
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -10,12 +11,17 @@ import numpy as np
 import openpyxl
 import polars as pl
 import pytest
+import scipy.io
 from tests.cli_runs import assert_bad_input, platinum, run
 
 import ulna
+from ulna.formats.layout import AS_EXPECTED
 from ulna.formats.table import read_header, read_table
+from ulna.formats.tables.coming import coming_table
 from ulna.ground.errors import UlnaInputError
 from ulna.measuring import written
+from ulna.measuring.job import MeasureJob
+from ulna.measuring.measure import measure_to_file
 
 Q = np.random.default_rng(3).uniform(-3, 3, (9, 7)).round(6)
 
@@ -76,6 +82,47 @@ def test_more_points_than_a_sheet_holds(tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(UlnaInputError, match=r"points\.xlsx: a sheet of a workbook holds 8 points.*\.parquet or \.csv"):
         ulna.measure(platinum(), readings(tmp_path), out=tmp_path / "points.xlsx")
     assert not (tmp_path / "points.xlsx").exists()
+
+
+def as_table(folder: Path, form: str, rows: int) -> Path:
+    """Readings of one pose, over and over."""
+    path, q_rad = folder / f"readings.{form}", np.tile(np.linspace(0.1, 0.7, 7), (rows, 1))
+    frame = pl.DataFrame({f"q{k + 1}": q_rad[:, k] for k in range(7)})
+    if form == "parquet":
+        frame.write_parquet(path)
+    elif form == "mat":
+        scipy.io.savemat(path, {"q": q_rad})
+    elif form == "xlsx":
+        written.write_workbook(iter([frame]), path)
+    else:
+        path.write_text(frame.write_csv() + "\n\n")  # blank lines at the end are no rows
+    return path
+
+
+@pytest.mark.parametrize("form", ["csv", "parquet", "mat", "xlsx"])
+def test_too_many_points_are_refused_before_the_first_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, form: str
+) -> None:
+    """With their number; as many as a sheet holds are written."""
+    just, more = tmp_path / "just", tmp_path / "more"
+    for folder, rows in ((just, 8), (more, 9)):
+        folder.mkdir()
+        as_table(folder, form, rows)
+    monkeypatch.setattr(written, "MOST_SHEET_ROWS", 9)
+    assert ulna.measure(platinum(), just / f"readings.{form}", out=tmp_path / "points.xlsx").rows == 8
+    monkeypatch.setattr("ulna.measuring.job.MeasureJob.frames", lambda *_: pytest.fail("it was measured"))
+    with pytest.raises(UlnaInputError, match="holds 8 points, and there are 9; expected another format"):
+        ulna.measure(platinum(), more / f"readings.{form}", out=more / "points.xlsx")
+    assert sorted(each.name for each in more.iterdir()) == [f"readings.{form}"]
+
+
+def test_too_many_points_of_a_pipe_leave_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(written, "MOST_SHEET_ROWS", 9)
+    text = as_table(tmp_path, "csv", 9).read_bytes()
+    job = MeasureJob(platinum(), coming_table(io.BytesIO(text), "readings", AS_EXPECTED), None, "rad", "mm")
+    with pytest.raises(UlnaInputError, match="holds 8 points, and there are more"):
+        measure_to_file(job, tmp_path / "points.xlsx", [])
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["readings.csv"]
 
 
 @pytest.mark.parametrize("name", ["points.mat", "points.h5", "points", "points.xls"])

@@ -13,7 +13,7 @@ from tests.cli_runs import assert_bad_input, run
 from tests.home_built import GERMAN, LENGTH_MM, Kept, measured, text, workbook
 from tests.small_study import says
 
-from ulna.cli.new import _proposed
+from ulna.cli.asking import proposed
 from ulna.ground.errors import UlnaInputError
 from ulna.proposals.answers import Answers, UnansweredError
 from ulna.proposals.propose import Proposal, propose
@@ -249,7 +249,7 @@ def test_on_a_terminal_it_asks_until_nothing_is_left(
     complete: Answers, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A wrong answer is told, and asked for again."""
-    typed = ["stick", "bar", "long", str(LENGTH_MM), "reach 1000", "9", "none"]
+    typed = ["stick", "bar", "long", str(LENGTH_MM), "reach 1000", "9", "none", "perhaps", "no"]
     shown: list[str] = []
 
     def prompt(text: str, **_: Any) -> str:
@@ -258,7 +258,8 @@ def test_on_a_terminal_it_asks_until_nothing_is_left(
 
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     monkeypatch.setattr("typer.prompt", prompt)
-    found = _proposed(Answers(readings=complete.readings))
+    assert complete.readings is not None
+    found = proposed(Answers(), [complete.readings], [])
     assert typed == []
     assert found.stated.keys == {"kind": "bar", "length": LENGTH_MM}
     told = capsys.readouterr().err

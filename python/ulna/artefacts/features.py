@@ -12,6 +12,7 @@ from ulna.artefacts.readings import InputFile
 from ulna.artefacts.tables import Place
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout, TableKeys
+from ulna.formats.own_units import LENGTHS, LENGTHS_STATED, check_units
 from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import F64, I64
@@ -62,6 +63,7 @@ def features_of_file(file: Path, keys: TableKeys | None, key: str, place: Place)
     """Read a table of features; it is added to the files of `place`. `key`: `artefact.plate`. Raises UlnaInputError."""
     mm = place.units.mm
     header = open_features(file, keys, key, place.path, place.remarks)
+    check_units(header, COLUMNS, place.units.length, LENGTHS, LENGTHS_STATED)
     frame = read_table(
         header, lambda column: column != "feature", [column for column in COLUMNS if column in header.columns]
     )

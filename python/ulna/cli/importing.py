@@ -157,6 +157,7 @@ def dh(
     found = import_dh(file, out, chosen, length_unit, angle_unit, tip, force)
     probes = ", ".join(f"'{name}'" for name in found.arm.probes)
     _say(f"{out}: '{found.arm.name}', {found.arm.n} joints, probe{'s' * (len(found.arm.probes) > 1)} {probes}.")
+    _say(found.taken)
     for remark in found.remarks:
         _say(remark)
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ulna.cli.options import Force
 from ulna.cli.running import guard
-
-if TYPE_CHECKING:
-    from ulna.proposals.answers import Answers
-    from ulna.proposals.propose import Proposal
 
 _TOUCHED, _ARM, _FILE = "What was touched", "The arm", "How the file is written, where it is not seen"
 
@@ -20,12 +16,17 @@ _TOUCHED, _ARM, _FILE = "What was touched", "The arm", "How the file is written,
 @guard
 def new(
     readings: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The readings: CSV, Excel, Parquet, MAT or HDF5.")
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="CSV, Excel, Parquet, MAT or HDF5; again for another artefact."),
     ] = None,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder to write to.")] = Path("study"),
     artefact: Annotated[
-        str | None,
-        typer.Option(metavar="KIND", help="bar, seat, points, length, sphere, plane, …", rich_help_panel=_TOUCHED),
+        list[str] | None,
+        typer.Option(
+            metavar="KIND",
+            help="bar, seat, points, sphere, plane, …; with its size: bar:443.172, points:plate.csv. Repeat it.",
+            rich_help_panel=_TOUCHED,
+        ),
     ] = None,
     length: Annotated[float | None, typer.Option(metavar="MM", help="Of the bar.", rich_help_panel=_TOUCHED)] = None,
     diameter: Annotated[
@@ -133,21 +134,25 @@ def new(
     elsewhere in one message that names the options. Zeros and signs of encoders that nobody knows are searched for, and
     an arm without a drawing is found from its reach. The readings stay where they are; nothing is overwritten.
 
+    Several artefacts make one study: say --readings and --artefact for each, in the same order, with the size behind
+    the kind and a standard uncertainty behind that, all in mm (bar:443.172:0.001). One file that names the artefact of
+    each row is enough: --artefact 'Stab=bar:443.172' --artefact 'Kugel=sphere:25.4'.
+
     Example: [bold]ulna new --readings Messung.xlsx --artefact bar --length 443.172 --reach 1200 --parallel none[/bold]
     """
     from ulna.calibration.identify import identify
     from ulna.cli import output
+    from ulna.cli.asking import proposed
     from ulna.cli.printed.identification import identification_report
     from ulna.cli.printed.proposal import proposal_report
     from ulna.formats.output import check_output
     from ulna.proposals.answers import Answers
+    from ulna.proposals.several import touched
     from ulna.proposals.write import FILES, write_proposal
     from ulna.study.study import Study
 
     check_output(out, FILES, force)
     answers = Answers(
-        readings=readings,
-        artefact=artefact,
         length=length,
         diameter=diameter,
         features=features,
@@ -182,42 +187,10 @@ def new(
         header=True if header is None else header,
         units_row=units_row,
     )
-    proposal = _proposed(answers)
+    proposal = proposed(answers, readings or [], [touched(each) for each in artefact or []])
     write_proposal(proposal, out, force)
     output.print_renderable(*proposal_report(proposal))
     study = Study.load(out / "study.toml")
     output.print_renderable(*identification_report(identify(study), study.arm))
     output.say(f"Written: {', '.join(str(out / each) for each in FILES)}")
     output.say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
-
-
-def _proposed(answers: Answers) -> Proposal:
-    """The proposal; on a terminal what is missing is asked, one question after the other, until nothing is. Raises
-    UlnaInputError."""
-    import sys
-
-    from ulna.ground.errors import UlnaInputError
-    from ulna.proposals.answers import UnansweredError
-    from ulna.proposals.propose import propose
-
-    before: Answers | None = None
-    while True:
-        try:
-            return propose(answers)
-        except UnansweredError as asked:
-            if not sys.stdin.isatty():
-                raise
-            before = answers
-            question = asked.questions[0]
-            choices = "/".join(question.choices) or question.flag
-            asks = f"{question.asks[0].upper()}{question.asks[1:]}? [{choices}]\n"
-            text = typer.prompt(asks, prompt_suffix="> ", err=True)
-            try:
-                answers = question.answered(answers, text)
-            except UlnaInputError as error:
-                print(error, file=sys.stderr)
-        except UlnaInputError as error:  # what was typed last does not fit: it is asked for again
-            if before is None or before == answers:
-                raise
-            print(error, file=sys.stderr)
-            answers = before

@@ -9,7 +9,7 @@ import polars as pl
 
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
-from ulna.formats.spelling import PLAIN, Spelling, thousands_of
+from ulna.formats.spelling import PLAIN, Spelling, sexagesimal, thousands_of
 
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
@@ -42,6 +42,15 @@ def text_cell(
             f"Correct the key, say {layout.say('thousands', '.')} where points stand between thousands, or export the "
             "table again without them."
         )
+    degrees = sexagesimal(cell)
+    if numeric(column) and degrees is not None:
+        return f"{at}: got '{cell[:60]}', {minutes_said(degrees)}"
+    bare = cell.strip().removesuffix("°").rstrip()
+    if numeric(column) and bare != cell.strip() and number_of(bare, decimal) is not None:
+        return (
+            f"{at}: got '{cell[:60]}', a number with its unit; expected '{bare}'. Write the unit once, in the heading "
+            "or where the unit of angles is said (deg), and remove the sign from the cells."
+        )
     sign = "" if layout.thousands else thousands_of(cell, decimal)
     if numeric(column) and sign:
         return (
@@ -54,6 +63,14 @@ def text_cell(
             f"({layout.key('header')}). Correct the cell, or remove that where this is the header."
         )
     return bad_cell(header, row, column, cell, numeric, decimal)
+
+
+def minutes_said(degrees: float) -> str:
+    """The rest of a message about an angle in degrees, minutes and seconds."""
+    return (
+        f"degrees, minutes and seconds; expected decimal degrees, such as {degrees:.6f}. Write the column so, and say "
+        "that angles are in deg."
+    )
 
 
 def wrong_count(header: Header, row: int, cells: list[str], width: int, separator: str, named: bool) -> str:

@@ -74,12 +74,22 @@ class Header(ABC):
         """Number of data rows; None where nobody knows without reading them."""
         return None
 
+    def counted(self) -> int | None:
+        """The same, found by looking through the file once where that is quick; None where it cannot be known before
+        all is read: what comes from a pipe, what is damaged."""
+        return self.rows
+
     def own(self, column: str) -> str:
         """The file's own name of a column."""
         return self.theirs.get(column, column)
 
     def origin(self, column: str) -> str:
         """Of what a column was made, where that may surprise: "'q' is 7 × 500"; else ""."""
+        return ""
+
+    @property
+    def further(self) -> str:
+        """Where more of the file is, which was not read, as a sentence with a blank before it; else ""."""
         return ""
 
     def find(self, name: str) -> str | None:

@@ -234,11 +234,10 @@ class Layout:
         near, units = near_names(header, known, theirs)
         if near:
             shown = ", ".join(f"'{name}' as {ours}" for name, ours in near.items())
-            header = dataclasses.replace(
-                header,
-                remarks=[*header.remarks, f"{header.path}: columns taken by their names: {shown}."],
-                units={**header.units, **units},
-            )
+            told = f"{header.path}: columns taken by their names: {shown}."
+            header = dataclasses.replace(header, remarks=[*header.remarks, told])
+        if units:
+            header = dataclasses.replace(header, units={**header.units, **units})
         return self._labelled(header.renamed({name: ours for name, ours in (theirs | near).items() if name != ours}))
 
     def _labelled(self, header: AnyHeader) -> AnyHeader:

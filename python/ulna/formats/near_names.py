@@ -1,7 +1,8 @@
 """Columns whose names are Ulna's but for capitals and a unit in brackets: `Q1`, `q1 [rad]`, `x (mm)`.
 
-They are taken for what they say, and told, where the table could not be used otherwise: encoder angles, and tables that
-have none (points). Any other column of such a name stays one that nobody uses, or a slip that is asked about.
+They are taken for what they say, and told, where the table could not be used otherwise: encoder angles, lengths with
+their unit, and tables without angles (points). Any other column of such a name stays one that nobody uses, or a slip
+that is asked about.
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ import re
 from collections.abc import Mapping, Sequence
 
 from ulna.formats.header import Header
+from ulna.formats.own_units import LENGTHS
+
+_UNIT = re.compile(r"(.+?)\s*[\[(]\s*([^\])]+?)\s*[\])]")
 
 
 def near_names(
@@ -24,13 +28,23 @@ def near_names(
     for column in header.columns:
         if column in known or column in mapped:
             continue
-        match = re.fullmatch(r"(.+?)\s*[\[(]\s*([^\])]+?)\s*[\])]", column)
+        match = _UNIT.fullmatch(column)
         ours = (match[1] if match else column).casefold()
         if ours not in known or ours in header.columns or ours in mapped.values() or ours in names.values():
             continue
-        if "q1" in known and not re.fullmatch(r"q\d+", ours) and not (match and ours[0] == "p" and names):
+        if "q1" in known and not re.fullmatch(r"q\d+", ours) and not _goes_along(ours, match, column, header, names):
             continue
         names[column] = ours
         if match:
             units[column] = match[2]
-    return names, units
+    return names, units | {column: match[2] for column in mapped if (match := _UNIT.fullmatch(column))}
+
+
+def _goes_along(ours: str, match: re.Match[str] | None, column: str, header: Header, names: Mapping[str, str]) -> bool:
+    """Whether a column beside the angles is meant: a second pose as the first one is written, a length with a unit."""
+    if match and LENGTHS.names(match[2]) and not re.fullmatch(r"[qp]\d+", ours):
+        return True
+    if re.fullmatch(r"p\d+", ours) is None or not names:
+        return False
+    angles = [name for name in (*header.columns, *names.values()) if re.fullmatch(r"q\d+", name)]
+    return match is not None or all(f"P{name[1:]}" in header.columns for name in angles)

@@ -62,6 +62,20 @@ def looks_numeric(text: str) -> bool:
     return _LOOKS.fullmatch(text.strip().replace("\u2212", "-")) is not None
 
 
+_DEGREES = re.compile(r"""([+-]?)\s*(\d+)\s*°\s*(\d+)\s*['′’]\s*(?:(\d+(?:[.,]\d+)?)\s*(?:["″”]|''))?""")
+
+
+def sexagesimal(text: str) -> float | None:
+    """The degrees of the first angle in a text that is written in degrees, minutes and seconds (12°30'15"); None where
+    there is none."""
+    found = _DEGREES.search(text.replace("\u2212", "-"))
+    if found is None:
+        return None
+    sign, degrees, minutes, seconds = found.groups()
+    value = int(degrees) + int(minutes) / 60.0 + float((seconds or "0").replace(",", ".")) / 3600.0
+    return -value if sign == "-" else value
+
+
 def thousands_of(text: str, decimal: str) -> str:
     """The sign that may stand between the thousands of a text that is no number as it is; "" where none does."""
     for sign in (",", ".", "'", " "):

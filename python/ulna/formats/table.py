@@ -12,6 +12,8 @@ import polars as pl
 from ulna.formats.cells import number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, AnyHeader, Layout
+from ulna.formats.no_table import is_prose, prose, refuse_foreign
+from ulna.formats.tables.marks import is_text
 from ulna.formats.tables.registry import WHAT, open_table
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
@@ -33,7 +35,18 @@ def read_header(
     start = read_bytes(path, what, limit=1 << 16)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
-    return named_header(open_table(path, start, what, layout), layout, known or [])
+    refuse_foreign(path, start, what)
+    names = {*(known or ()), *layout.columns.values()}
+    words = layout.header is True and is_text(start) and is_prose(start, names)
+    try:
+        header = open_table(path, start, what, layout)
+    except UlnaInputError:
+        if words:
+            raise prose(path, what) from None
+        raise
+    if words:
+        raise prose(path, what)
+    return named_header(header, layout, known or [])
 
 
 def named_header(header: AnyHeader, layout: Layout, known: Sequence[str]) -> AnyHeader:

@@ -22,7 +22,7 @@ from ulna.measuring.arrays import measure_array, measure_frame
 from ulna.measuring.job import MeasureJob
 from ulna.measuring.measured import Measured
 from ulna.measuring.measurement import Measurement
-from ulna.measuring.written import TooManyRowsError, writer_of
+from ulna.measuring.written import TooManyRowsError, check_room, writer_of
 
 Angle = Literal["rad", "deg", "counts"]
 
@@ -149,6 +149,7 @@ def measure_to_file(
     """The points in a file by its ending, whole or not at all. Raises UlnaInputError; KeyboardInterrupt."""
     write = writer_of(path)
     refuse_inputs([path], inputs)
+    check_room(path, job.header.counted)
     with new_file(path, force=force) as staged:
         try:
             write(job.frames(progress), staged)

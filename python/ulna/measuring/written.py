@@ -20,6 +20,12 @@ MOST_SHEET_ROWS = 1_048_576
 class TooManyRowsError(Exception):
     """More than a format can hold; the message says what to do."""
 
+    def __init__(self, there: str = "there are more") -> None:
+        super().__init__(
+            f"a sheet of a workbook holds {MOST_SHEET_ROWS - 1} points, and {there}; expected another format. Name a "
+            ".parquet or .csv file."
+        )
+
 
 Write = Callable[[Iterator[pl.DataFrame], Path], None]
 
@@ -94,10 +100,7 @@ def _fill(sheet: Any, frames: Iterator[pl.DataFrame]) -> None:
             rows = 1
         rows += len(frame)
         if rows > MOST_SHEET_ROWS:
-            raise TooManyRowsError(
-                f"a sheet of a workbook holds {MOST_SHEET_ROWS - 1} points, and there are more; expected another "
-                "format. Name a .parquet or .csv file."
-            )
+            raise TooManyRowsError
         texts = [dtype == pl.String for dtype in frame.dtypes]
         for row in frame.iter_rows():
             cells = zip(row, texts, strict=True)
@@ -130,3 +133,13 @@ def writer_of(path: Path) -> Write:
         what = f"got the ending '{ending}', which points cannot be written to" if ending else "it has no ending"
         raise UlnaInputError(f"{path}: {what}; expected one of {known}. Name such a file.")
     return ENDINGS[ending]
+
+
+def check_room(path: Path, count: Callable[[], int | None]) -> None:
+    """Whether as many points go into such a file; `count` is asked only where that matters, and may not know. Raises
+    UlnaInputError."""
+    if ENDINGS.get(path.suffix.lower()) is not write_workbook:
+        return
+    rows = count()
+    if rows is not None and rows >= MOST_SHEET_ROWS:
+        raise UlnaInputError(f"{path}: {TooManyRowsError(f'there are {rows}')}")

@@ -55,6 +55,12 @@ class Answers:
     comment: str | None = None
     header: bool | int = True
     units_row: bool | None = None
+    called: str | None = None
+    """The study's name of the artefact; its kind where nobody says."""
+    of_rows: tuple[str, str] | None = None
+    """Which rows are of this artefact: the column that names it, and how it is called there."""
+    scaled: bool = False
+    """Whether another artefact of the study has a known length."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,8 @@ class Question:
     asks: str
     """What is asked, and why; without the question mark."""
     choices: tuple[str, ...] = ()
+    about: str = ""
+    """Of several alike, which one: an artefact that a file names."""
 
     def answered(self, answers: Answers, text: str) -> Answers:
         """With what somebody typed. Raises UlnaInputError for what is no answer."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import polars as pl
 
@@ -69,3 +69,14 @@ def columns_of(header: Header) -> list[Column]:
 def named(columns: Sequence[Column], name: str) -> Column | None:
     """The column of a name."""
     return next((column for column in columns if column.name == name), None)
+
+
+def own_rows(columns: Sequence[Column], of_rows: tuple[str, str] | None) -> Sequence[Column]:
+    """The columns without that which names artefacts, and only the rows in which it says the label; all where nobody
+    asks for some."""
+    if of_rows is None:
+        return columns
+    name, label = of_rows
+    own = next(column for column in columns if column.name == name).down() == label
+    rest = [column for column in columns if column.name != name]
+    return [replace(c, texts=c.texts.filter(own), numbers=c.numbers.filter(own)) for c in rest]

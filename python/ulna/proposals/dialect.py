@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ulna.formats.encodings import decoded
 from ulna.formats.layout import Layout
+from ulna.formats.no_table import is_prose, prose, refuse_foreign
 from ulna.formats.tables.marks import is_text
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
@@ -25,6 +26,9 @@ def seen_dialect(path: Path, layout: Layout, what: str) -> tuple[Layout, dict[st
     start = read_bytes(path, what, limit=_LOOKED_AT)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
+    refuse_foreign(path, start, what)
+    if is_text(start) and is_prose(start):
+        raise prose(path, what)
     if start.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0", b"PAR1")) or not is_text(start):
         return layout, {}
     whole = start if len(start) < _LOOKED_AT else start[: start.rfind(b"\n") + 1]

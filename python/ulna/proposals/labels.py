@@ -170,8 +170,8 @@ def other_labels(
         heading = column.meaning
         if heading.role == "artefact" and not column.numeric and len(column.labels) > 1:
             raise UlnaInputError(
-                f"{path}: column '{column.name}' names several artefacts ({_listed(column.labels)}); expected one, of "
-                "which ulna new writes a study. Give a file for each, or write the study's other artefacts by hand."
+                f"{path}: column '{column.name}' names several artefacts ({_listed(column.labels)}); expected to be "
+                f"told what each is. Say it: --artefact '{column.labels[0]}=KIND:VALUE', and so on."
             )
         if heading.role == "temperature" and column.numeric and not column.bad and not found.has("temperature"):
             found.take(column, "temperature", f"'{heading.word}'")

@@ -10,13 +10,14 @@ from typing import Any
 
 from ulna.arm.arm import Arm
 from ulna.artefacts.kinds import kind_of
+from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.table import read_header
 from ulna.ground.errors import UlnaInputError
 from ulna.proposals.angles import Angles, angles_of, counts_question, unit_of
 from ulna.proposals.answers import Answers, Question, UnansweredError, check
 from ulna.proposals.arms import DRAWING, PARALLEL, Drawn, as_asked, by_reach, drawn_arm, encoder_questions
-from ulna.proposals.columns import Column, Taken, columns_of
+from ulna.proposals.columns import Column, Taken, columns_of, own_rows
 from ulna.proposals.dialect import seen_dialect
 from ulna.proposals.fitting import (
     ball_question,
@@ -53,27 +54,51 @@ class Proposal:
     """Keys of the [[readings]] table but `file`."""
     remarks: list[str]
     rows: int
+    others: tuple[Proposal, ...] = ()
+    """Further readings of the same study: of other artefacts, or in other files."""
+
+    @property
+    def every(self) -> tuple[Proposal, ...]:
+        """This one, and the others."""
+        return (self, *self.others)
 
     @property
     def inputs(self) -> list[Path]:
         """Files that are read and stay where they are."""
-        return [self.readings, *self.drawn.files, *self.stated.files]
+        return [path for each in self.every for path in (each.readings, *each.drawn.files, *each.stated.files)]
 
 
-def propose(answers: Answers) -> Proposal:
-    """The proposal. Raises UnansweredError with all questions that can be asked now, UlnaInputError for what cannot be
-    used."""
-    check(answers)
+@dataclass(frozen=True)
+class Opened:
+    """A file of readings, looked at."""
+
+    layout: Layout
+    """As it is said."""
+    seen: dict[str, str]
+    """Key → what was seen of how it is written."""
+    header: Header
+    columns: list[Column]
+
+
+def opened(answers: Answers) -> Opened:
+    """The file of readings. Raises UlnaInputError, UnansweredError where none was said."""
     path = answers.readings
     if path is None:
         raise UnansweredError(
             "ulna new", [Question("readings", "--readings FILE", "which file has the readings, a row for each touch")]
         )
     layout = Layout.of_options(answers.columns, answers.names, **{key: getattr(answers, key) for key in _LAYOUT})
-    bare = replace(layout, columns={}, names={})
-    bare, seen = seen_dialect(path, bare, WHAT)
+    bare, seen = seen_dialect(path, replace(layout, columns={}, names={}), WHAT)
     header = read_header(path, WHAT, bare)
-    columns = columns_of(header)
+    return Opened(layout, seen, header, columns_of(header))
+
+
+def propose(answers: Answers) -> Proposal:
+    """The proposal. Raises UnansweredError with all questions that can be asked now, UlnaInputError for what cannot be
+    used."""
+    check(answers)
+    file = opened(answers)
+    path, layout, header, columns = file.header.path, file.layout, file.header, file.columns
     check_mapped(layout, header)
     if not len(columns[0].texts):
         raise UlnaInputError(f"{path}: there are no rows; expected at least one reading. Add them.")
@@ -83,7 +108,8 @@ def propose(answers: Answers) -> Proposal:
     angles = angles_of(path, columns, layout.columns, None if drawn is None else drawn.joint_names)
     if isinstance(angles, Question):
         raise UnansweredError(str(path), [*questions, angles])
-    what = stated(answers, columns, path)
+    own = own_rows(columns, answers.of_rows)
+    what = stated(answers, own, path)
     questions += what if isinstance(what, list) else []
     if drawn is None and not isinstance(found, list):
         if answers.reach is None:
@@ -91,7 +117,8 @@ def propose(answers: Answers) -> Proposal:
         elif not answers.parallel:
             questions.append(PARALLEL)
         else:
-            check_scale(what, answers)
+            if not answers.scaled:
+                check_scale(what, answers)
             drawn = by_reach(angles.count, answers.reach, answers.parallel, path.stem)
     if drawn is not None:
         check_axes(path, drawn, angles)
@@ -103,7 +130,7 @@ def propose(answers: Answers) -> Proposal:
         questions.append(counts_question(angles))
     if isinstance(what, list):
         raise UnansweredError(str(path), questions)
-    labels = labels_of(path, answers, columns, angles, what, layout)
+    labels = labels_of(path, answers, own, angles, what, layout)
     questions += labels.questions
     bad = conditions_on_cells(header, angles, answers)
     questions += [bad] if isinstance(bad, Question) else []
@@ -111,13 +138,18 @@ def propose(answers: Answers) -> Proposal:
         questions += ball_question(what, drawn, answers, path)
     if questions or drawn is None or isinstance(unit, Question) or isinstance(bad, Question):
         raise UnansweredError(str(path), questions)
-    probes = probe_names(columns, labels, drawn, path, dict(layout.names))
+    probes = probe_names(own, labels, drawn, path, dict(layout.names))
     arm, search = as_asked(drawn, answers, probes)
+    if answers.of_rows is not None:
+        name, label = answers.of_rows
+        naming = next(column for column in columns if column.name == name)
+        labels.take(naming, "artefact", f"the rows of '{label}'", filled=True)
+        bad = {**bad, "artefact": label}
     taken = {each.column: each for each in [*labels.taken, *angles.taken]}
-    entry = entry_of(answers, seen, unit[0], list(taken.values()), labels, dict(layout.names), bad)
+    entry = entry_of(answers, file.seen, unit[0], list(taken.values()), labels, dict(layout.names), bad)
     remarks = [*drawn.remarks, *what.remarks]  # of the readings: whoever loads the study is told
     order = [taken[column.name] for column in columns]
-    return Proposal(path, arm, drawn, search, what, *unit, order, entry, remarks, len(columns[0].texts))
+    return Proposal(path, arm, drawn, search, what, *unit, order, entry, remarks, len(own[0].texts))
 
 
 def labels_of(

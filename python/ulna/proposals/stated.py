@@ -39,6 +39,13 @@ class Stated:
     """Of the study."""
     remarks: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
+    bound: bool = False
+    """Whether a file says that unit; else the lengths may be written in any."""
+
+    @property
+    def source(self) -> Path | None:
+        """The file of its features."""
+        return self.files[0] if self.files else None
 
 
 def kind_question() -> Question:
@@ -87,9 +94,9 @@ def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated |
     remarks: list[str] = []
     units = Units(length=unit, angle="rad")  # type: ignore[arg-type]
     place = Place(label, units, remarks)
-    artefact = made(kind.name, kind.table.model_validate(keys | _absolute(answers)), place)
+    artefact = made(answers.called or kind.name, kind.table.model_validate(keys | _absolute(answers)), place)
     files = () if answers.features is None else (answers.features,)
-    return Stated(artefact, keys, unit, tuple(remarks), files)
+    return Stated(artefact, keys, unit, tuple(remarks), files, bool(found) or measured or own_points)
 
 
 def _absolute(answers: Answers) -> dict[str, str]:

@@ -54,23 +54,26 @@ def _arm_text(proposal: Proposal) -> str:
 
 def study_text(proposal: Proposal, folder: Path) -> str:
     """The study file, to stand in a folder."""
-    stated = proposal.stated
+    files = ", ".join(dict.fromkeys(each.readings.name for each in proposal.every))
     lines = [
-        _comment(f"Written by ulna new from {proposal.readings.name}. Change what is not so; ulna calibrate reads it."),
+        _comment(f"Written by ulna new from {files}. Change what is not so; ulna calibrate reads it."),
         'format = "ulna-study/1"',
         'arm = "arm.toml"',
-        f'units = {{ length = "{stated.length_unit}", angle = "rad" }}',
-        "",
-        "[[readings]]",
-        f"file = {toml_value(_relative(proposal.readings, folder))}",
-        *(_line(key, value, proposal) for key, value in proposal.entry.items()),
+        f'units = {{ length = "{proposal.stated.length_unit}", angle = "rad" }}',
     ]
-    lines += ["", f"[artefact.{toml_key(stated.artefact.name)}]"]
-    for key, value in stated.keys.items():
-        text = toml_value(_relative(Path(value), folder)) if key == "features" else toml_value(value)
-        lines.append(f"{toml_key(key)} = {text}")
-    if "u" in KINDS[stated.artefact.kind].table.model_fields and "u" not in stated.keys:
-        lines.append(_comment("u = 0.001    (the standard uncertainty of its certificate, where you have it)"))
+    artefacts = {each.stated.artefact.name: each.stated for each in proposal.every}
+    for each in proposal.every:
+        lines += ["", "[[readings]]", f"file = {toml_value(_relative(each.readings, folder))}"]
+        if len(artefacts) > 1 and "artefact" not in each.entry.get("where", {}):
+            lines.append(f"artefact = {toml_value(each.stated.artefact.name)}")
+        lines += [_line(key, value, each) for key, value in each.entry.items()]
+    for name, stated in artefacts.items():
+        lines += ["", f"[artefact.{toml_key(name)}]"]
+        for key, value in stated.keys.items():
+            text = toml_value(_relative(Path(value), folder)) if key == "features" else toml_value(value)
+            lines.append(f"{toml_key(key)} = {text}")
+        if "u" in KINDS[stated.artefact.kind].table.model_fields and "u" not in stated.keys:
+            lines.append(_comment("u = 0.001    (the standard uncertainty of its certificate, where you have it)"))
     lines += ["", "[fit]"]
     if proposal.search:
         lines.append('start = "search"    # the encoders\' zeros are not known: find them')

@@ -24,6 +24,7 @@ from ulna.artefacts.tables import Place
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.models import fill
+from ulna.formats.own_units import ANGLES
 from ulna.formats.rows import Rows
 from ulna.formats.table import file_sha256, named_header
 from ulna.formats.tables.frame import FrameTable, frame_table
@@ -33,7 +34,6 @@ from ulna.ground.provided import provided
 from ulna.study.data import FitOptions, Noise, StudyData, Taken
 from ulna.study.options import with_options
 from ulna.study.parameters import check_patterns
-from ulna.study.readings.checks import unit_named
 from ulna.study.readings.columns import ReadingsEntry, Source, is_length, known_columns
 from ulna.study.readings.gathered import gathered
 from ulna.study.readings.readings import WHAT, read_readings
@@ -131,7 +131,7 @@ def _check_angles(header: Header, arm: Arm) -> None:
 
 def _angle(header: Header, arm: Arm) -> str:
     """The unit that the columns' names say. Raises UlnaInputError where they say none, or several."""
-    said = {unit_named(header.units.get(header.own(f"q{k + 1}"), "")) for k in range(arm.n)}
+    said = {ANGLES.unit(header.units.get(header.own(f"q{k + 1}"), "")) for k in range(arm.n)}
     if len(said) == 1 and None not in said:
         return str(said.pop())
     words = "is not stated, and never guessed" if said <= {None} else "is not the same in all columns' names"

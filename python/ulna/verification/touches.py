@@ -13,6 +13,7 @@ import polars as pl
 from ulna.arm.arm import Arm
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
+from ulna.formats.own_units import LENGTHS, LENGTHS_STATED, check_units
 from ulna.formats.table import file_sha256, read_header, read_table
 from ulna.formats.units import Units
 from ulna.formats.unused import remark_strange
@@ -155,6 +156,7 @@ def _coordinates(header: Header, entry: VerifyReadings, setting: Setting, remark
                 f"{setting.path}: key 'readings.{key}': {header.path} holds coordinates; expected it with encoder "
                 "readings only. Remove it."
             )
+    check_units(header, XYZ, setting.units.length, LENGTHS, LENGTHS_STATED)
     frame = _filled(header, [*_labels_of(header), *XYZ])
     p_mm = np.ascontiguousarray(frame.select(XYZ).to_numpy(), dtype=np.float64) * setting.units.mm
     ball_mm = np.full(len(frame), np.nan if setting.ball_mm is None else setting.ball_mm)

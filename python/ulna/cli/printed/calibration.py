@@ -16,6 +16,7 @@ from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions
 from ulna.cli.printed.outliers import far_off
 from ulna.cli.printed.scale import common_factor
+from ulna.cli.printed.signs import signs_in_full
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import decimals, figure_mm, fixed, plain_uncertainty, quantity, uncertainty
 
@@ -36,6 +37,7 @@ _METHODS = {"annealing": "simulated annealing", "evolution": "an evolutionary se
 def calibration_report(result: Result) -> list[RenderableType]:
     """All of `ulna calibrate`, as `--all` prints it."""
     parts: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
+    parts += signs_in_full(result.fit)
     parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
     parts += [Text(said) for said in filter(None, [common_factor(result)])]
     rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
@@ -46,10 +48,6 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
     return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
-
-
-#: sets of joints that may all count the other way, of which each is said
-_MOST_SETS = 3
 
 
 def ending(fit: FitSummary) -> str:
@@ -68,37 +66,7 @@ def ending(fit: FitSummary) -> str:
         text += f" Searched {fit.searched_starts} starts, {reason}."
     if fit.folded:
         text += f" Folded to the twin nearest the given arm: {', '.join(fit.folded)}."
-    return text + _signs(fit)
-
-
-def _signs(fit: FitSummary) -> str:
-    """What is not told of the signs: which make it the mirror image, and how to decide; which change nothing."""
-    text = ""
-    if fit.mirrored_signs:
-        text += (
-            " x, y and z may be mirror-imaged: these readings do not tell this arm from its mirror image, in which "
-            f"{_joints(fit.mirrored_signs)} the other way. To decide, turn one of these joints counter-clockwise, "
-            "looked at from the end of its z axis in the arm file: with sign = 1 its count rises. State that sign and "
-            "calibrate again."
-        )
-    same = [joints for joints in fit.undecided_signs if joints not in fit.mirrored_signs]
-    if same:
-        text += f" The same arm, written differently: {_joints(same)} the other way."
     return text
-
-
-def _joints(sets: Sequence[Sequence[int]]) -> str:
-    """Which joints count, in words: "joints 1 and 3, or joint 7 count"; of many sets, which joints are in any."""
-    if len(sets) > _MOST_SETS:
-        every = sorted({joint for joints in sets for joint in joints})
-        return f"some of joints {_and(every)} ({len(sets)} choices, each with its own twists) count"
-    said = [f"joint{'s' * (len(joints) > 1)} {_and(joints)}" for joints in sets]
-    return f"{', or '.join(said)} {'counts' if len(sets[-1]) == 1 else 'count'}"
-
-
-def _and(numbers: Sequence[int]) -> str:
-    *most, last = [str(number) for number in numbers]
-    return f"{', '.join(most)} and {last}" if most else last
 
 
 def equations(fit: FitSummary) -> str:

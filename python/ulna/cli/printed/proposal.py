@@ -14,14 +14,16 @@ from ulna.proposals.propose import Proposal
 
 def proposal_report(proposal: Proposal) -> Iterator[RenderableType]:
     """The parts, in order."""
-    yield from (Text(remark) for remark in proposal.remarks)
-    grid = plain_table(f"{proposal.readings.name}: {proposal.rows} rows")
-    for head in ("column", "taken for", "because"):
-        grid.add_column(head, overflow="fold")
-    for taken in proposal.taken:
-        grid.add_row(Text(taken.column), Text(taken.ours or "not used"), Text(taken.why))
-    yield grid
-    yield Text("")
+    yield from (Text(remark) for remark in dict.fromkeys(said for each in proposal.every for said in each.remarks))
+    for each in proposal.every:
+        whose = f" of '{each.stated.artefact.name}'" if proposal.others else ""
+        grid = plain_table(f"{each.readings.name}: {each.rows} rows{whose}")
+        for head in ("column", "taken for", "because"):
+            grid.add_column(head, overflow="fold")
+        for taken in each.taken:
+            grid.add_row(Text(taken.column), Text(taken.ours or "not used"), Text(taken.why))
+        yield grid
+        yield Text("")
     said = Table.grid(padding=(0, 2, 0, 0))
     for what, how in _settled(proposal):
         said.add_row(Text(what), Text(how))
@@ -39,10 +41,11 @@ def _settled(proposal: Proposal) -> Iterator[tuple[str, str]]:
     if proposal.search or arm.unknown_signs.any():
         unknown = ["zeros"] * proposal.search + ["signs"] * bool(arm.unknown_signs.any())
         yield "encoders", f"{' and '.join(unknown)} are not known: the calibration searches for them"
-    dimensions = [
-        f"{key} = {value}" for key, value in proposal.stated.keys.items() if key not in ("kind", "features_format")
-    ]
-    yield "touched", ", ".join([str(proposal.stated.keys["kind"]), *dimensions]) + f" ({proposal.stated.length_unit})"
-    if "where" in proposal.entry:
+    for stated in {each.stated.artefact.name: each.stated for each in proposal.every}.values():
+        dimensions = [
+            f"{key} = {value}" for key, value in stated.keys.items() if key not in ("kind", "features_format")
+        ]
+        yield "touched", ", ".join([str(stated.keys["kind"]), *dimensions]) + f" ({stated.length_unit})"
+    if any(set(each.entry.get("where", ())) - {"artefact"} for each in proposal.every):
         yield "left out", "rows in which an axis has no number"
     yield "far off", 'readings that do not fit count less (loss = "cauchy"), and calibrate names them'

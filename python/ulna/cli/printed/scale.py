@@ -59,7 +59,8 @@ def times(factor: float) -> str:
         return f"{abs(size - 1.0) * 100.0:.3g} % {word}"
     if size < 1e-3:
         return "more than a thousand times shorter"
-    return f"{size if longer else 1.0 / size:.3g} times {word}"
+    size = size if longer else 1.0 / size
+    return f"{size:.0f} times {word}" if size >= 100.0 else f"{size:.3g} times {word}"
 
 
 def _taken_for(factor: float) -> str:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ulna.documents.content.acceptance import wholes
 from ulna.documents.content.content import Content
-from ulna.documents.languages.text import Text, named, styled
+from ulna.documents.languages.text import Text, named, plain, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Listed, Paragraph, Tile, Tiles, own
 from ulna.documents.sections.decision import STYLES, verdict
 from ulna.ground.digits import figure_mm
+
+#: sets of joints whose signs are not told, of which each is named
+_FEW_SETS = 3
 
 
 def ending(content: Content, words: Words) -> Paragraph:
@@ -48,9 +52,10 @@ def counts(content: Content, words: Words) -> list[Block]:
     if fit.signs_found:
         found_signs = ", ".join(f"{name} = {sign}" for name, sign in fit.signs_found.items())
         said.append(words("summary.signs-found", signs=own(found_signs)))
-    for joints in fit.undecided_signs:
-        key = "summary.mirror" if joints in fit.mirrored_signs else "summary.signs"
-        said.append(words(key, joints=own(", ".join(map(str, joints)))))
+    same = [joints for joints in fit.undecided_signs if joints not in fit.mirrored_signs]
+    for key, sets in (("summary.mirror", fit.mirrored_signs), ("summary.signs", same)):
+        if sets:
+            said.append(words(key, joints=_sets(sets, words)))
     if content.verification is not None:
         name = content.verification.file.profile.name
         for whole in wholes(content.verification.file):
@@ -60,6 +65,14 @@ def counts(content: Content, words: Words) -> list[Block]:
     if fit.common_factor is not None:
         said.append(words("summary.common-factor", factor=own(f"{fit.common_factor:.4g}")))
     return [Listed(said)]
+
+
+def _sets(sets: Sequence[Sequence[int]], words: Words) -> Text:
+    """Sets of joints that may count the other way, the first of many."""
+    either = plain(words("summary.either"))
+    text = own(f" {either} ".join(", ".join(map(str, joints)) for joints in sets[:_FEW_SETS]))
+    more = len(sets) - _FEW_SETS
+    return (*text, " ", *words("summary.more-sets", more=more)) if more > 0 else text
 
 
 def tiles(content: Content, words: Words) -> Tiles:

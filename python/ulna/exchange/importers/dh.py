@@ -20,6 +20,15 @@ from ulna.formats.output import refuse_inputs, write_file
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
+#: of an arm, all its lengths together: beyond that another unit is rather meant
+SHORTEST_MM, LONGEST_MM = 10.0, 15_000.0
+#: of a right angle: so near to one is one that was rounded
+_ALIKE = 0.01
+_STANDS = {
+    "dh": "alpha and a of a row stand behind its joint (dh).",
+    "modified-dh": "alpha and a of a row stand before its joint (modified-dh).",
+}
+
 
 @dataclass(frozen=True)
 class Imported:
@@ -27,6 +36,8 @@ class Imported:
 
     arm: Arm
     remarks: list[str]
+    taken: str = ""
+    """What of the file was taken for what, in one sentence."""
 
 
 def import_dh(
@@ -46,7 +57,9 @@ def import_dh(
     refuse_inputs([out], [path])
     found = arm_from_table(read_dh(path, length, angle), convention, tip)
     write_file(
-        out, commented(found.arm, [f"Made of {path.name}, convention {convention}.", *found.remarks]), force=force
+        out,
+        commented(found.arm, [f"Made of {path.name}, convention {convention}. {found.taken}", *found.remarks]),
+        force=force,
     )
     return found
 
@@ -67,7 +80,7 @@ def arm_from_table(table: Table, convention: Convention, tip: tuple[float, float
                 )
         joints, probes, base = from_modified(table.joints, frames)
     joints, probes, parallel = hayati_where_parallel(joints, probes)
-    remarks = []
+    remarks = doubts(table)
     if parallel:
         remarks.append(
             f"Hayati joints, because the next axis is (nearly) parallel: {', '.join(map(str, parallel))}. An offset d "
@@ -75,7 +88,25 @@ def arm_from_table(table: Table, convention: Convention, tip: tuple[float, float
         )
     if not np.array_equal(base, np.eye(4)):
         remarks.append(base_remark(base, "of the table"))
-    return Imported(Arm(table.path.stem, joints, probes), remarks)
+    taken = f"Read: {table.taken}. {_STANDS[convention]}"
+    if not table.tips:
+        taken += " The tip is where it was said to be." if tip else " The tip is the origin of the last row's frame."
+    return Imported(Arm(table.path.stem, joints, probes), remarks, taken)
+
+
+def doubts(table: Table) -> list[str]:
+    """Questions about units that can hardly be what was meant."""
+    rows = [*table.joints, *table.tips.values()]
+    reach_mm = sum(abs(row.a_mm) + abs(row.d_mm) for row in rows)
+    found = []
+    if reach_mm and not SHORTEST_MM <= reach_mm <= LONGEST_MM:
+        found.append(f"All lengths together are {reach_mm:.6g} mm, for an arm: is their unit right?")
+    twists = [row.alpha_rad for row in rows if row.alpha_rad]
+    as_degrees = [math.degrees(twist) for twist in twists]
+    if twists and all(abs(each / (math.pi / 2) - round(each / (math.pi / 2))) < _ALIKE for each in as_degrees):
+        shown = ", ".join(f"{each:g}" for each in dict.fromkeys(round(each, 9) for each in as_degrees))
+        found.append(f"alpha is {shown} degrees, and right angles are that in rad: is the unit of angles right?")
+    return found
 
 
 def _tip_frames(table: Table, convention: Convention, tip: tuple[float, float, float] | None) -> dict[str, Probe]:

@@ -15,9 +15,15 @@ from pathlib import Path
 import polars as pl
 
 from ulna.arm.joint import MOST_RAD, Joint
+from ulna.formats.cells import is_decimal_comma
 from ulna.formats.header import Header
+from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.names import check_name
+from ulna.formats.own_units import ANGLES as OWN_ANGLES
+from ulna.formats.own_units import LENGTHS as OWN_LENGTHS
 from ulna.formats.table import read_header, read_table
+from ulna.formats.tables.marks import is_text
+from ulna.formats.toml import read_bytes
 from ulna.formats.units import MM_PER, RAD_PER
 from ulna.ground.errors import UlnaInputError
 
@@ -43,6 +49,8 @@ class Table:
     """By the probe's name: the frame whose origin is its tip."""
     mm: float | None
     """mm in a unit of length of the table; None where its columns have several."""
+    taken: str
+    """Which column was taken for what, in which unit."""
 
 
 @dataclass(frozen=True)
@@ -53,17 +61,37 @@ class _Column:
     parameter: str
     factor: float
 
+    @property
+    def unit(self) -> str:
+        units = RAD_PER if self.parameter in ANGLES else MM_PER
+        return next(unit for unit, factor in units.items() if factor == self.factor)
+
 
 def read_dh(path: Path, length: str | None = None, angle: str | None = None) -> Table:
     """The rows of a table. A unit is that in the column's name (`a_mm`), or `length` or `angle`; never guessed.
 
     Raises UlnaInputError naming column, row and value of what cannot be used.
     """
-    return dh_of(read_header(path, WHAT), length, angle)
+    return dh_of(read_header(path, WHAT, _written(path)), length, angle)
+
+
+def _written(path: Path) -> Layout:
+    """How the table is written, where that is certain: semicolons in its first line and no comma there."""
+    start = read_bytes(path, WHAT, limit=1 << 16)
+    if not is_text(start):
+        return AS_EXPECTED
+    lines = start.decode("latin-1").splitlines()
+    if not lines or ";" not in lines[0] or "," in lines[0]:
+        return AS_EXPECTED
+    comma = any(is_decimal_comma(cell) for line in lines[1:] for cell in line.split(";"))
+    return Layout.of_options(separator=";", decimal="," if comma else ".")
 
 
 def dh_of(header: Header, length: str | None = None, angle: str | None = None) -> Table:
     """The same of a table that is open already. Raises UlnaInputError."""
+    there = {name: name.casefold() for name in header.columns}
+    known_names = (*LABELS, "sign")
+    header = header.renamed({o: own for o, own in there.items() if own in known_names and own not in header.columns})
     columns = [_column(name, header, length, angle) for name in header.columns if name not in (*LABELS, "sign")]
     known = [column.parameter for column in columns]
     _check_known(header, known)
@@ -85,12 +113,26 @@ def dh_of(header: Header, length: str | None = None, angle: str | None = None) -
             )
         tips[name] = row
     factors = {column.factor for column in columns if column.parameter in LENGTHS}
-    return Table(header.path, joints, tips, factors.pop() if len(factors) == 1 else None)
+    return Table(header.path, joints, tips, factors.pop() if len(factors) == 1 else None, _taken(header, columns))
+
+
+def _taken(header: Header, columns: Sequence[_Column]) -> str:
+    """ "theta0 in rad, alpha in rad, a in mm, d in mm", with what an offset means, and what else was read."""
+    said = [
+        f"{column.parameter} in {column.unit}"
+        + (" (turn = sign * encoder + offset)" if column.parameter == "offset" else "")
+        for column in columns
+    ]
+    said += [name for name in (*LABELS, "sign") if name in header.columns]
+    return ", ".join(said) + ("" if "sign" in header.columns else "; every encoder's sign is 1")
 
 
 def _column(name: str, header: Header, length: str | None, angle: str | None) -> _Column:
-    match = re.fullmatch(r"([a-z0-9]+?)(?:_(mm|m|in|rad|deg))?", name)
-    parameter, unit = (match[1], match[2]) if match else (name, None)
+    match = re.fullmatch(r"([a-z0-9]+?)(?:_(mm|m|in|rad|deg)|\s*[\[(]\s*(mm|m|in|rad|deg|°)\s*[\])])?", name.casefold())
+    said = header.units.get(header.own(name), "").strip("[]()")
+    parameter = match[1] if match else name
+    unit = ((match[2] or match[3]) if match else None) or OWN_ANGLES.unit(said) or OWN_LENGTHS.unit(said)
+    unit = "deg" if unit == "°" else unit
     for known, units, option, given in (
         (ANGLES, RAD_PER, "--angle-unit", angle),
         (LENGTHS, MM_PER, "--length-unit", length),

@@ -83,6 +83,7 @@ class ArrayTable(Header):
 
     parts: Mapping[str, Column] = field(repr=False)
     """By the file's name of the column."""
+    further: str = field(default="", kw_only=True)
 
     @classmethod
     def of(
@@ -93,7 +94,17 @@ class ArrayTable(Header):
         columns = columns_of(variables, path)
         if not columns:
             raise no_arrays(path, layout, inner)
-        return cls(path, [name for name, _ in columns], parts=dict(columns), what=what)
+        names = [name for name, _ in columns]
+        inner = [name for name in inner if not name.startswith(("#", "_"))]  # what libraries put there for themselves
+        if not inner:
+            return cls(path, names, parts=dict(columns), what=what)
+        told = f"{_some(inner)}: {layout.say('dataset', inner[0])} reads that"
+        remark = f"{path}: not read: what is in {told}."
+        return cls(path, names, parts=dict(columns), what=what, remarks=[remark], further=f" There is more in {told}.")
+
+    def counted(self) -> int | None:
+        lengths = {self.parts[self.own(name)].length for name in self.columns if name.startswith("q")}
+        return lengths.pop() if len(lengths) == 1 else None
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         parts = {name: self.parts[self.own(name)] for name in columns}

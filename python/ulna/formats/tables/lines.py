@@ -15,11 +15,12 @@ from pathlib import Path
 
 import polars as pl
 
-from ulna.formats.cells import text_cell, wrong_count
+from ulna.formats.cells import minutes_said, text_cell, wrong_count
 from ulna.formats.encodings import decoded, utf16
 from ulna.formats.header import MOST_CELLS, Numeric, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.places import Places
+from ulna.formats.spelling import sexagesimal
 from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import Grid, is_blank
 from ulna.ground.errors import UlnaInputError
@@ -235,6 +236,9 @@ def _check_quotes(path: Path, lines: list[str], first: int, last: int, separator
     inside = lines[first:last]
     odd = sum(line.count('"') for line in lines[first - 1 : last]) % 2
     if odd or any(usual and line.count(separator) >= usual for line in inside):
+        degrees = sexagesimal(lines[first - 1])
+        if degrees is not None:
+            raise UlnaInputError(f"{path}: line {first}: angles in {minutes_said(degrees)}")
         until = f"line {last}" if not odd else "the end of the file"
         raise UlnaInputError(
             f"{path}: line {first}: a quotation mark is opened and not closed before {until}, so that what stands "

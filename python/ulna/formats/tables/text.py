@@ -50,6 +50,13 @@ class TextTable(Header):
     def row_places(self) -> Places:
         return Places("line {}", self.lines)
 
+    def counted(self) -> int | None:
+        filled = ~pl.all_horizontal(pl.all().is_null())  # blank lines end the file
+        try:
+            return int(self._scan({}).filter(filled).select(pl.len()).collect().item())
+        except polars.exceptions.PolarsError:
+            return None
+
     # ------------------------------------------------------------ all rows at once
 
     def frame(self, numeric: Numeric, columns: Sequence[str], blank: Sequence[str] = ()) -> pl.DataFrame:

@@ -17,20 +17,10 @@ from ulna.arm.arm import Arm
 from ulna.arm.joint import MOST_RAD
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
+from ulna.formats.own_units import ANGLES, check_units
 from ulna.formats.wording import SHOWN, counted, rows_named
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
-
-_UNIT_WORDS = {
-    **dict.fromkeys(("rad", "radian", "radians", "弧度"), "rad"),
-    **dict.fromkeys(("deg", "°", "degree", "degrees", "度"), "deg"),
-    **dict.fromkeys(("counts", "count", "cnt", "inc", "pulses"), "counts"),
-}
-
-
-def unit_named(said: str) -> str | None:
-    """The unit of angles that a word means: rad, deg or counts; None where it is no such unit."""
-    return _UNIT_WORDS.get(said.casefold())
 
 
 def named_probe(probe: str | None, arm: Arm, path: Path) -> str:
@@ -58,7 +48,7 @@ def check_scale(
     one joint is beyond, and is one that goes all the way round, it has counted turns: no matter of units, for those are
     the same for all joints, but remarked upon (`Outside`).
     """
-    _check_own_units(header, [f"{letter}{k + 1}" for k in range(len(factors))], unit, remedy)
+    check_units(header, [f"{letter}{k + 1}" for k in range(len(factors))], unit, ANGLES, remedy)
     farthest_rad = np.abs(q_rad).max(axis=0)
     beyond = [k for k, joint in enumerate(arm.joints) if farthest_rad[k] > joint.most_rad]
     if not beyond or (len(beyond) == 1 and arm.joints[beyond[0]].goes_round):
@@ -72,23 +62,13 @@ def check_scale(
         expected = f"angles within the limits of joint {k + 1}, {low:g} to {high:g} rad, or ±4π rad (720°)"
     asked = {"rad": "degrees or counts", "deg": "counts", "counts": "counts, and is counts_per_turn right"}[unit]
     remedy = "Correct counts_per_turn or the column." if unit == "counts" else remedy
+    alone = " and ".join(f"{letter}{each + 1}" for each in beyond) if 2 * len(beyond) < len(factors) else ""
+    alone = alone and f" Only {alone} {'is' if len(beyond) == 1 else 'are'} beyond: in another unit than the rest?"
     raise UlnaInputError(
         f"{header.path}: {header.at(int(row[first]), f'{letter}{k + 1}')}: got {column[first] / factors[k]:g} {unit}, "
-        f"more than two turns; expected {expected}. Are these {asked}? {remedy} If joint {k + 1} does turn that far, "
-        "say so in the arm file: endless = true, or limits."
+        f"more than two turns; expected {expected}. Are these {asked}?{alone} {remedy} If joint {k + 1} does turn that "
+        "far, say so in the arm file: endless = true, or limits."
     )
-
-
-def _check_own_units(header: Header, columns: list[str], unit: str, remedy: str) -> None:
-    """What the file itself says of its units is what the study says. Raises UlnaInputError."""
-    for column in columns:
-        said = header.units.get(header.own(column), "")
-        own = _UNIT_WORDS.get(said.casefold(), unit)  # what is no unit of angles says nothing of them
-        if own != unit:
-            raise UlnaInputError(
-                f"{header.path}: {header.named(column)}: the file says '{said}', but its angles are said to be in "
-                f"{unit}; expected the same. {remedy}"
-            )
 
 
 def check_ids(frame: pl.DataFrame, row: I64, header: Header) -> None:

@@ -86,6 +86,11 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
             f"{header.path}: {header.head} begins with '#' ({', '.join(header.columns)[:60]}); expected the header "
             f"with {expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
         )
+    if len(header.columns) == 1 and len(header.columns[0].split()) > 1:
+        raise UlnaInputError(
+            f"{header.path}: {header.head} is one column, '{header.columns[0][:60]}'; expected {expected[0]} … "
+            f'{expected[-1]}. Are the columns separated by blanks? Say separator = " " (--separator " ").'
+        )
     slips = [column for column in header.columns if column.lower() in missing]
     origin = next(filter(None, map(header.origin, [*extra, *(c for c in header.columns if c == letter)])), "")
     has = (
@@ -103,6 +108,7 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
             else f"{origin}: expected numbers, one row for each reading. Write it so, or name the right arm."
             if origin
             else "Map the file's columns with the key 'columns', name the right arm, or correct the header."
+            + header.further
         )
     )
 

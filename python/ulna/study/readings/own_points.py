@@ -14,6 +14,7 @@ from ulna.artefacts.features import uncertainties
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.formats.header import Header
+from ulna.formats.own_units import LENGTHS, LENGTHS_STATED, check_units
 from ulna.formats.units import Units
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
@@ -47,6 +48,7 @@ def own_points(
             f"own, so each reading needs the coordinates of its point; expected columns x, y, z, in {units.length}. "
             f"Add or map them, or give artefact.{artefact.name}.features in {source.study}."
         )
+    check_units(header, ["x", "y", "z", "u"], units.length, LENGTHS, LENGTHS_STATED)
     if "feature" in frame.columns or source.entry.feature is not None:
         remarks.append(
             f"{header.path}: the names of features are not used: artefact '{artefact.name}' has none of its own, and "

@@ -16,6 +16,7 @@ from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
+from ulna.formats.own_units import LENGTHS, LENGTHS_STATED, check_units
 from ulna.formats.rows import Rows, Selection
 from ulna.formats.table import file_sha256, named_header, read_header, read_table
 from ulna.formats.units import RAD_PER, Units
@@ -192,9 +193,10 @@ def _measured(
             give = f", or give artefact.{artefact.name}.length in {source.study}" if column == "length" else ""
             raise UlnaInputError(
                 f"{header.path}: the column '{column}' is missing; expected the distance {between} of each row, in "
-                f"{units.length}. Add it{give}."
+                f"{units.length}. Add it{give}.{header.further}"
             )
         return np.full(len(row), artefact.length_mm)
+    check_units(header, [column], units.length, LENGTHS, LENGTHS_STATED)
     lengths = frame[column].to_numpy()
     if (lengths < 0).any():
         first = int(np.argmax(lengths < 0))
