@@ -53,6 +53,7 @@ class Features:
         uncertain = np.abs(each_move).max(axis=(0, 2)) > 0.0
         at_readings = np.concatenate(readings)
         return Placed(
+            true,
             self.name,
             self.table,
             columns,
@@ -111,7 +112,7 @@ class Surface:
         columns = {"placement": [f"p{k + 1}" for k in range(self.places) for _ in range(self.each)]}
         points_mm = np.concatenate(points)
         none = np.zeros((len(points_mm), 0, 3))
-        return Placed(self.name, self.table, columns, 1, points_mm, np.concatenate(readings), none)
+        return Placed(true, self.name, self.table, columns, 1, points_mm, np.concatenate(readings), none)
 
 
 def _on_ball(count: int, rng: np.random.Generator) -> Array:
@@ -145,9 +146,15 @@ def cylinder(places: int, each: int) -> Surface:
 
 
 def _poses(
-    name: str, table: dict[str, Any], columns: dict[str, Any], points_mm: Array, readings: Array, poses: int = 1
+    true: TrueArm,
+    name: str,
+    table: dict[str, Any],
+    columns: dict[str, Any],
+    points_mm: Array,
+    readings: Array,
+    poses: int = 1,
 ) -> Placed:
-    return Placed(name, table, columns, poses, points_mm, readings, np.zeros((len(points_mm), 0, 3)))
+    return Placed(true, name, table, columns, poses, points_mm, readings, np.zeros((len(points_mm), 0, 3)))
 
 
 @dataclass(frozen=True)
@@ -165,7 +172,7 @@ class Coordinates:
         labels = [f"m{k + 1}" for k in range(self.count)]
         table: dict[str, Any] = {"kind": "points", "frame": self.frame}
         table |= {"features_mm": dict(zip(labels, known_mm.tolist(), strict=True))}
-        return _poses("tracker", table, {"feature": labels, "placement": ["p1"] * self.count}, at_mm, readings)
+        return _poses(true, "tracker", table, {"feature": labels, "placement": ["p1"] * self.count}, at_mm, readings)
 
 
 @dataclass(frozen=True)
@@ -179,7 +186,7 @@ class Lengths:
         readings = true.random(2 * self.count, rng)
         at_mm = true.tips.tip(readings)
         apart_mm = np.linalg.norm(at_mm[self.count :] - at_mm[: self.count], axis=1)
-        return _poses("lengths", {"kind": "length"}, {"length_mm": apart_mm}, at_mm, readings, poses=2)
+        return _poses(true, "lengths", {"kind": "length"}, {"length_mm": apart_mm}, at_mm, readings, poses=2)
 
 
 @dataclass(frozen=True)
@@ -195,4 +202,4 @@ class Distances:
         at_mm, place = true.tips.tip(readings), np.repeat(np.arange(self.places), self.each)
         apart_mm = np.linalg.norm(at_mm - somewhere(true, self.places, rng)[place], axis=1)
         columns = {"distance_mm": apart_mm, "placement": [f"p{k + 1}" for k in place.tolist()]}
-        return _poses("instrument", {"kind": "distance"}, columns, at_mm, readings)
+        return _poses(true, "instrument", {"kind": "distance"}, columns, at_mm, readings)

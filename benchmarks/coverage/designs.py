@@ -64,7 +64,7 @@ def design(name: str, number: int) -> Design:
         }
     studies = []
     for each in placed:
-        frame = rows_of(true, each, np.split(each.readings, each.poses))
+        frame = rows_of(each, np.split(each.readings, each.poses))
         table = {each.name: each.table}
         studies.append(ulna.Study.from_frame(told, frame, table, angle="rad", length_unit="mm", **stated, **fit))
     readings = [group for study in studies for group in study.readings]

@@ -6,6 +6,7 @@ covariance; and lengths measured with new noise of encoders and touches, by all 
 
 import dataclasses
 import math
+from fnmatch import fnmatchcase
 
 import numpy as np
 
@@ -42,7 +43,13 @@ def counted(error: Array, u: Array, k: float) -> Counted:
 def of_parameters(case: Case, here: Design, result: ulna.Result, rng: np.random.Generator) -> Counted:
     """Those that are fitted, the arm's own."""
     true = dict(zip(here.arm.parameter_names, here.arm.parameters.tolist(), strict=True))
-    rows = [row for row in result.parameters if row.status != "held" and row.name in true]
+    rows = [
+        row
+        for row in result.parameters
+        if row.status != "held"
+        and row.name in true
+        and any(fnmatchcase(row.name, pattern) for pattern in case.parameters)
+    ]
     error = np.array([row.value - true[row.name] for row in rows])
     return counted(error, np.array([np.nan if row.u is None else row.u for row in rows]), factor(result))
 

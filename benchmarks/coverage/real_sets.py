@@ -6,7 +6,7 @@ The data are not part of the project (docs/real-readings.md says where they are 
 import tempfile
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -65,7 +65,7 @@ def _series(folder: Path, name: str) -> Path:
 def _study(path: Path) -> ulna.Study:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ulna.InputWarning)
-        return ulna.Study.load(path)
+        return replace(ulna.Study.load(path), path=None)  # the folder is gone when messages would name it
 
 
 SETS: dict[str, tuple[str, Callable[[Path], list[Fold]]]] = {

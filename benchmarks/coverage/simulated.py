@@ -48,7 +48,7 @@ def calibrated(name: str, number: int) -> Calibrated:
     groups = []
     for placed, group in zip(here.placed, here.study.readings, strict=True):
         n = here.true.n
-        poses = [readings[group.row - 1, :n] for readings in placed.drawn(here.true, case.errors, rng)]
+        poses = [readings[group.row - 1, :n] for readings in placed.drawn(case.errors, rng)]
         second: dict[str, Any] = {"p_rad": poses[1]} if len(poses) > 1 else {}
         groups.append(dataclasses.replace(group, q_rad=np.ascontiguousarray(poses[0]), **second))
     start = drawing(case, here.told, rng)

@@ -5,6 +5,7 @@ A place is looked for once; from there each calibration's touches are a few step
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -35,6 +36,7 @@ class Errors:
 class Placed:
     """An artefact that stands, and exact postures that touch it."""
 
+    true: TrueArm
     name: str
     table: dict[str, Any]
     """As a study states it."""
@@ -49,14 +51,32 @@ class Placed:
     moves_mm: Array
     """(poses N, K, 3) how these are moved by each standard uncertainty of the artefact."""
 
-    def drawn(self, true: TrueArm, errors: Errors, rng: np.random.Generator) -> list[Array]:
+    @cached_property
+    def back(self) -> Array:
+        """(poses N, n, 3) rad/mm: the least motion of the joints that moves the tip."""
+        j = self.true.by_encoder(self.readings)
+        found: Array = np.einsum("nki,nkl->nil", j, np.linalg.inv(j @ j.transpose(0, 2, 1)))
+        return found
+
+    def drawn(self, errors: Errors, rng: np.random.Generator) -> list[Array]:
         """(N, n or 3 n) of each pose of a row: the artefact as it may be, touched and read with noise."""
         artefact = rng.standard_normal(self.moves_mm.shape[1])
         at_mm = self.points_mm + np.einsum("nkj,k->nj", self.moves_mm, artefact)
         at_mm = at_mm + errors.beside(len(at_mm), rng)
-        readings = settled(true, self.readings, at_mm)
-        readings[:, : true.n] += errors.encoder_rad * rng.standard_normal((len(readings), true.n))
+        readings, n = self.settled(at_mm), self.true.n
+        readings[:, :n] += errors.encoder_rad * rng.standard_normal((len(readings), n))
         return np.split(readings, self.poses)
+
+    def settled(self, points_mm: Array) -> Array:
+        """(poses N, n or 3 n) postures with the tip on points that are near its own; the derivative there is good for
+        all steps."""
+        readings = self.readings.copy()
+        for _ in range(12):
+            miss = points_mm - self.true.tips.tip(readings)
+            if np.abs(miss).max() < 1e-9:
+                return readings
+            readings[:, : self.true.n] += np.einsum("nik,nk->ni", self.back, miss)
+        raise AssertionError(f"a touch was not reached by {np.abs(miss).max():g} mm")
 
 
 class Artefact(Protocol):
@@ -64,19 +84,6 @@ class Artefact(Protocol):
 
     def place(self, true: TrueArm, rng: np.random.Generator) -> Placed:
         """Somewhere within reach."""
-
-
-def settled(true: TrueArm, readings: Array, points_mm: Array) -> Array:
-    """Postures with the tip on points that are near theirs; the derivative of the first is good for all steps."""
-    readings, n = readings.copy(), true.n
-    j = true.by_encoder(readings)
-    back = np.einsum("nki,nkl->nil", j, np.linalg.inv(j @ j.transpose(0, 2, 1)))
-    for _ in range(12):
-        miss = points_mm - true.tips.tip(readings)
-        if np.abs(miss).max() < 1e-9:
-            return readings
-        readings[:, :n] += np.einsum("nik,nk->ni", back, miss)
-    raise AssertionError(f"a touch was not reached by {np.abs(miss).max():g} mm")
 
 
 def found(true: TrueArm, points_mm: Array, rng: np.random.Generator, tries: int = 3) -> Array:
@@ -115,8 +122,9 @@ def turns(count: int, rng: np.random.Generator) -> Array:
     return np.asarray(q * np.linalg.det(q)[:, None, None])
 
 
-def rows_of(true: TrueArm, placed: Placed, readings: Sequence[Array]) -> dict[str, Any]:
+def rows_of(placed: Placed, readings: Sequence[Array]) -> dict[str, Any]:
     """The frame of a study."""
+    true = placed.true
     columns = {"qp"[k] + str(i + 1): r[:, i] for k, r in enumerate(readings) for i in range(true.n)}
     said = true.said(readings[0])
     columns |= {"temperature": said["temperature_c"]} if "temperature_c" in said else {}

@@ -42,8 +42,8 @@ def test_a_share_is_known_as_well_as_there_are_calibrations() -> None:
 
 
 def test_intervals_of_known_coverage() -> None:
-    """u half of what it should be holds 67.3 % (2 Φ(0.98) - 1); then three coordinates together, and with a common factor that was
-    estimated."""
+    """u half of what it should be holds 67.3 % (2 Φ(0.98) - 1); then three coordinates together, and with a factor
+    common to them that was estimated."""
     rng = np.random.default_rng(2)
     error = rng.standard_normal(100_000)
     u = np.where(np.arange(len(error)) % 10 == 0, np.nan, 0.5)
