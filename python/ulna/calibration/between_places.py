@@ -36,8 +36,9 @@ LEAST_TOUCHES = 40
 ROUNDS = 20
 SHOWS = 0.3
 """An artefact's uncertainty above this part of the scatter shows."""
-ALONE = 0.9999
-"""A direction of which a standing says more than this part is known from it alone: without it nothing is expected."""
+ALONE = 0.75
+"""A direction of which a standing says more than this part is known from it alone: without it the others say next to
+nothing, and how wrong that is tells nothing of the rest."""
 SIGNIFICANT = 6.63
 """Twice the logarithm of the likelihoods' ratio that chance exceeds in one of a hundred."""
 FEW = 3
