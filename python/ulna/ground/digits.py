@@ -59,6 +59,14 @@ def figure_mm(value: float) -> str:
     return small(value, 2) if 0.0 < abs(value) < 5e-5 else fixed(value, 4)
 
 
+def percent(share: float) -> str:
+    """A probability in percent, with two digits of what it lacks to 0 or to 100; at most a millionth is not told."""
+    tail = min(share, 1.0 - share)
+    if tail < 1e-6:
+        return "< 0.0001" if share < 0.5 else "> 99.9999"
+    return fixed(100.0 * share, max(1 - _power(100.0 * tail), 0))
+
+
 def small(value: float, digits: int) -> str:
     """3.1e-6, without the zero that printf puts into exponents."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from ulna.verification.budget import Budget
 from ulna.verification.decision import Decided, Limit, Verdict, worst_verdict
 from ulna.verification.figures.figure import Definition
+from ulna.verification.risk import Decision, Process, Risk, risk_of
 from ulna.verification.tables import State
 
 
@@ -49,6 +50,8 @@ class Judged:
     single: Single
     limit_mm: float | None
     decided: Decided
+    conformity: float | None
+    """Probability that the true value keeps the limit; None where there is no limit or no uncertainty."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,8 @@ class FigureResult:
     values: list[Judged]
     k: float
     p: float
+    process: Process | None = None
+    """What is made, where it was stated."""
 
     @property
     def worst(self) -> Judged:
@@ -76,6 +81,16 @@ class FigureResult:
     def verdict(self) -> Verdict | None:
         """Of the worst."""
         return self.worst.decided.verdict
+
+    @property
+    def risk(self) -> Risk | None:
+        """Of the decision on the worst value; None where there is no limit or no uncertainty."""
+        worst = self.worst
+        u_mm, limit_mm, guard_mm = worst.single.budget.u_mm, worst.limit_mm, worst.decided.guard_mm
+        if u_mm is None or limit_mm is None or guard_mm is None:
+            return None
+        decision = Decision(worst.single.value_mm, u_mm, limit_mm, guard_mm, worst.decided.verdict)
+        return risk_of(decision, self.definition.signed, self.process)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 State = Literal["as-found", "as-left"]
-Rule = Literal["1.65u", "U", "simple"]
+Rule = Literal["1.65u", "U", "rU", "simple"]
 Decision = Literal["pass", "fail", "undecided"]
 Conformity = Literal["pass", "conditionalPass", "conditionalFail", "fail", "noPass"]
 
