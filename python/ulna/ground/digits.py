@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from decimal import ROUND_HALF_EVEN, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 
 _MOST_DECIMALS = {"mm": 6, "rad": 9, "1": 9}
 _PLAIN_DECIMALS = {"mm": 4, "rad": 6, "1": 6}
@@ -47,6 +47,13 @@ def plain_uncertainty(u: float | None, unit: str) -> str:
     if u is None or unit not in _MOST_DECIMALS or not u >= 10.0 ** -_MOST_DECIMALS[unit]:
         return uncertainty(u)
     return fixed(u, decimals(u, unit))
+
+
+def two_digits_up(value: float) -> float:
+    """The least number of two significant digits that is not below a value > 0 (or 0); 0.00231 is 0.0024. What lies
+    beyond the twelfth digit is taken for the rounding of a sum."""
+    exact = Decimal(f"{value:.12g}")
+    return 0.0 if exact == 0 else float(exact.quantize(Decimal(1).scaleb(exact.adjusted() - 1), ROUND_CEILING))
 
 
 def _power(value: float) -> int:

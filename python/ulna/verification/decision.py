@@ -99,6 +99,14 @@ class Limit:
         return f"{self.a_mm:g} mm" if self.b is None else f"{self.a_mm:g} mm + L / {self.b:g}"
 
 
+def severity(verdict: Verdict | None, value_mm: float, limit_mm: float | None) -> tuple[int, float]:
+    """What makes a value the worst of several: a fail before all, then what is nearest to its limit or farthest beyond
+    it; without limits the largest."""
+    size = abs(value_mm)
+    order: dict[Verdict | None, int] = {"fail": 3, "undecided": 2, "pass": 1, None: 0}
+    return order[verdict], size if limit_mm is None else size - limit_mm
+
+
 def worst_verdict(verdicts: list[Verdict | None]) -> Verdict | None:
     """Of several: one that fails makes all fail; None where nothing is said of any."""
     ordered: tuple[Verdict, ...] = ("fail", "undecided", "pass")

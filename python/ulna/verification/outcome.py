@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ulna.verification.budget import Budget
-from ulna.verification.decision import Decided, Limit, Verdict, worst_verdict
+from ulna.verification.decision import Decided, Limit, Verdict, severity, worst_verdict
 from ulna.verification.figures.figure import Definition
 from ulna.verification.risk import Decision, Process, Risk, risk_of
 from ulna.verification.tables import State
@@ -69,11 +69,9 @@ class FigureResult:
     @property
     def worst(self) -> Judged:
         """The value that decides: a fail before all, then what is nearest to its limit or farthest beyond it."""
-        order = {"fail": 3, "undecided": 2, "pass": 1, None: 0}
 
         def rank(judged: Judged) -> tuple[int, float]:
-            size = abs(judged.single.value_mm)
-            return order[judged.decided.verdict], size if judged.limit_mm is None else size - judged.limit_mm
+            return severity(judged.decided.verdict, judged.single.value_mm, judged.limit_mm)
 
         return max(self.values, key=rank)
 
