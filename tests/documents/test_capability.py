@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from tests import dcc_reading as reading
 from tests.certificates import EXAMPLE, RESULT, document
+from tests.cli_runs import run
 from tests.documents.test_html import Page
 from tests.documents.test_verified import figure, state, verification
 
@@ -109,6 +110,15 @@ def test_u_below_the_capability_is_lifted_and_said(tmp_path: Path, accredited: b
         text for text in reading.statements(content)["Calibration and measurement capability"] if "E_Uni" in text
     ]
     assert "Of the worst value U was computed as 0.0020 mm and is stated as 0.0041 mm." in said
+
+
+def test_the_command_says_what_was_lifted(tmp_path: Path) -> None:
+    lab, path = laboratory(tmp_path, more=CMC), verified(tmp_path)
+    done = run("certificate", RESULT, lab, "--verification", path, "-o", tmp_path / "c.xml")
+    assert done.returncode == 0, done.stderr
+    assert "U lifted to the laboratory's CMC, and decided anew: E_Uni" in done.stdout
+    done = run("certificate", RESULT, laboratory(tmp_path), "--verification", path, "-o", tmp_path / "d.xml")
+    assert "the laboratory file states no CMC of E_Uni" in done.stdout
 
 
 def test_what_decisions_risk_stands_beside_conformity(tmp_path: Path) -> None:

@@ -63,6 +63,8 @@ class Certificate:
                     "title": tests.title,
                     "conformity": tests.conformity,
                     "values": {value.name: value.conformity for value in tests.values},
+                    "lifted": [each.figure for each in tests.lifted],
+                    "without_cmc": list(tests.without),
                 }
                 for tests in self.tested
             ],
