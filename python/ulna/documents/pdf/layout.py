@@ -51,8 +51,7 @@ LAYOUTS: dict[str, Layout] = {
         | _shares(1.5, "consumer-at-most", "producer-at-most")
     ),
     "global-risk": Layout(
-        {"condition": 1.3, "figure": 1, "process": 2.4} | _shares(1.2, "consumer", "producer", "withheld", "undecided"),
-        size_pt=7.5,
+        {"condition": 1.3, "figure": 0.8} | _shares(1.4, "consumer", "producer", "withheld", "undecided")
     ),
     "files": Layout({"file": 1, "sha256": 0, "state": 0}, size_pt=7.5),
 }

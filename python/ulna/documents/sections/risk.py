@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ulna.documents.languages.text import NONE, Text, named
+from ulna.documents.languages.text import NONE, Text, joined, named
 from ulna.documents.languages.words import Words
-from ulna.documents.sections.blocks import Block, Heading, Paragraph, own, table
+from ulna.documents.sections.blocks import Block, Heading, Listed, Paragraph, own, table
 from ulna.ground.digits import figure_mm, percent
 from ulna.verification.result_file import FigureTable, GlobalRiskTable, ProcessTable, RiskTable, VerificationFile
 
 COLUMNS = ("condition", "figure", "conformity", "specific", "consumer-at-most", "producer-at-most")
-GLOBAL = ("condition", "figure", "process", "consumer", "producer", "withheld", "undecided")
+GLOBAL = ("condition", "figure", "consumer", "producer", "withheld", "undecided")
 
 
 def risks(file: VerificationFile, words: Words) -> list[Block]:
@@ -27,9 +27,11 @@ def risks(file: VerificationFile, words: Words) -> list[Block]:
     if not made:
         return [*page, Paragraph(words("risk.no-process"), "missing")]
     title = words("risk.global-title")
-    rows = [[*_of(state, figure, words), *_global(of_all, words)] for state, figure, of_all in made]
+    rows = [[*_of(state, figure, words), *map(share, _global(of_all))] for state, figure, of_all in made]
     note = Paragraph(words("risk.global-note"), "note")
-    return [*page, Heading(title), table("global-risk", title, words, GLOBAL, rows, left=3), note]
+    processes = {figure.key: of_all.process for _, figure, of_all in made}
+    said = [joined([named(key), process(of, words)], ": ") for key, of in processes.items()]
+    return [*page, Heading(title), table("global-risk", title, words, GLOBAL, rows, left=2), note, Listed(said)]
 
 
 def share(probability: float | None) -> Text:
@@ -59,6 +61,5 @@ def _specific(risk: RiskTable) -> tuple[float | None, ...]:
     return risk.conformity, risk.specific, risk.consumer_at_most, risk.producer_at_most
 
 
-def _global(of_all: GlobalRiskTable, words: Words) -> list[Text]:
-    shares = (of_all.consumer, of_all.producer, of_all.withheld, of_all.undecided)
-    return [process(of_all.process, words), *map(share, shares)]
+def _global(of_all: GlobalRiskTable) -> tuple[float, ...]:
+    return of_all.consumer, of_all.producer, of_all.withheld, of_all.undecided
