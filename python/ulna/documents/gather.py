@@ -94,7 +94,7 @@ def gather(
         environment=environment(found.provenance, source.study),
         outliers=found.outliers,
         extras=found.extras,
-        verification=None if tested is None else verification(tested),
+        verification=None if tested is None else verification(tested, None if named is None else named.value.file),
         laboratory=None if named is None else named.value,
         missing={},
         provenance=provenance(

@@ -25,7 +25,11 @@ def statements(sheet: Sheet, parent: Element, laboratory: Laboratory, result: Re
     _laboratory(sheet, parent, laboratory)
     if stated.fitted:
         statement(sheet, parent, sheet.own("section.uncertainty"), _uncertainty(sheet, stated))
-    statement(sheet, parent, sheet.own("dcc.rounding-name"), sheet.own("dcc.rounding"))
+    accredited = laboratory.file.laboratory.accreditation is not None
+    rounding = "dcc.rounding-accredited" if accredited else "dcc.rounding"
+    statement(sheet, parent, sheet.own("dcc.rounding-name"), sheet.own(rounding))
+    if accredited and stated.fitted:
+        statement(sheet, parent, sheet.own("dcc.cmc-name"), sheet.own("dcc.cmc-parameters"))
     _not_determined(sheet, parent, result, stated)
     for remark in laboratory.file.remarks:
         statement(sheet, parent, sheet.own("laboratory.remark"), sheet.theirs(remark))

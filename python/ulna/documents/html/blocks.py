@@ -60,6 +60,8 @@ LOOKS = {
     "indices": "",
     "verification": "",
     "singles": " tall",
+    "risk": "",
+    "global-risk": "",
     "artefacts": "",
     "equipment": "",
     "outliers": " tall",

@@ -45,5 +45,13 @@ LAYOUTS: dict[str, Layout] = {
         | _shares(1, "value-mm", "expanded-mm", "limit-mm", "guard-mm")
         | {"values": 0.9}
     ),
+    "risk": Layout(
+        {"condition": 1.3, "figure": 0.8}
+        | _shares(1.3, "conformity", "specific")
+        | _shares(1.5, "consumer-at-most", "producer-at-most")
+    ),
+    "global-risk": Layout(
+        {"condition": 1.3, "figure": 0.8} | _shares(1.4, "consumer", "producer", "withheld", "undecided")
+    ),
     "files": Layout({"file": 1, "sha256": 0, "state": 0}, size_pt=7.5),
 }
