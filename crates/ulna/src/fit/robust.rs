@@ -104,7 +104,8 @@ impl Standing {
             }
         }
         let fitted = Standing::fitted(whitened, degrees_of_freedom);
-        let mean = |of: &dyn Fn(f64) -> f64| slopes.iter().map(|(weight, slope)| weight * of(*slope)).sum::<f64>() / count;
+        let mean =
+            |of: &dyn Fn(f64) -> f64| slopes.iter().map(|(weight, slope)| weight * of(*slope)).sum::<f64>() / count;
         // c over κ: for next to no parameters the limit
         let per_fitted = if fitted < FEW { mean(&|slope| slope).recip() } else { shift(fitted, &mean) / fitted };
         squares / count * (1.0 - fitted) * per_fitted.powi(2)
@@ -124,13 +125,10 @@ impl Standing {
 
 /// A share of fitted parameters that changes no digit.
 const FEW: f64 = 1e-6;
-/// Where a loss lets go of a residual, ψ' falls below zero, and a residual is no longer one of its reading alone: from here on
-/// it counts as this.
-const LEAST_SLOPE: f64 = 0.1;
-
-/// The c with which `E[1 / (1 + c ψ')]` is what is left beside the fitted share, by halving: it falls as c grows.
+/// The c with which `E[1 / (1 + c ψ')]` is what is left beside the fitted share, by halving: it falls as c grows. Where a loss
+/// lets go of a residual and ψ' is below zero, nothing holds it: as where it is zero.
 fn shift(fitted: f64, mean: &dyn Fn(&dyn Fn(f64) -> f64) -> f64) -> f64 {
-    let left = |c: f64| mean(&|slope| (1.0 + c * slope).max(LEAST_SLOPE).recip());
+    let left = |c: f64| mean(&|slope| (1.0 + c * slope.max(0.0)).recip());
     let (mut low, mut high) = (0.0, 1.0);
     while left(high) > 1.0 - fitted && high < MOST_SHIFT {
         high *= 2.0;

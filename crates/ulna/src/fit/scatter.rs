@@ -133,7 +133,12 @@ pub(crate) fn at_minimum(
     if let (Some(loss), Some(_)) = (problem.loss(), shown.per_dof) {
         let told = Standing::fitted(whitened, shown.degrees_of_freedom) <= MOST_FITTED;
         let variance = standing.variance(whitened, loss, shown.degrees_of_freedom);
-        shown = Shown { per_dof: Some(variance), variance: if told { variance } else { f64::NAN }, estimated: true, ..shown };
+        shown = Shown {
+            per_dof: Some(variance),
+            variance: if told { variance } else { f64::NAN },
+            estimated: true,
+            ..shown
+        };
     }
     for _ in 0..ROUNDS {
         let next = shown.variance.sqrt().max(least);
@@ -164,9 +169,8 @@ struct Known {
 impl Known {
     fn of(problem: &Problem, free: &[usize], parameters: &[f64]) -> Known {
         let unknown = |parameter: usize| free.iter().position(|&j| j == parameter);
-        let prior = |prior: &Prior| {
-            Some((unknown(prior.parameter)?, prior.u, parameters[prior.parameter] - prior.value))
-        };
+        let prior =
+            |prior: &Prior| Some((unknown(prior.parameter)?, prior.u, parameters[prior.parameter] - prior.value));
         let considered = problem.considered_u(free).into_iter().enumerate().filter(|(_, u)| *u > 0.0);
         Known {
             priors: problem.priors().iter().filter_map(prior).collect(),
@@ -218,7 +222,8 @@ fn with_considered(considered: &[(usize, f64)], free: usize, judged: &Judged, un
     // what vanished without them has been judged: every other column is there
     let norms = triangle.column_norms();
     let gone = |j: &usize| *j < free && !judged.decomposition.kept.contains(j);
-    let natural_scale: Vec<f64> = (0..unknowns).map(|j| if gone(&j) { f64::MAX } else { norms[j].max(f64::MIN_POSITIVE) }).collect();
+    let natural_scale: Vec<f64> =
+        (0..unknowns).map(|j| if gone(&j) { f64::MAX } else { norms[j].max(f64::MIN_POSITIVE) }).collect();
     let behind = |direction: &Vec<f64>| direction.iter().copied().chain(considered.iter().map(|_| 0.0)).collect();
     let symmetries: Vec<Vec<f64>> = judged.symmetries.iter().map(|(_, direction)| behind(direction)).collect();
     let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
