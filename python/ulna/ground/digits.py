@@ -59,6 +59,11 @@ def figure_mm(value: float) -> str:
     return small(value, 2) if 0.0 < abs(value) < 5e-5 else fixed(value, 4)
 
 
+def degrees_of_freedom(value: float) -> str:
+    """A number that need not be whole: 76, 44.3; below one with two digits."""
+    return f"{value:.2g}" if value < 1.0 else f"{value:.1f}".removesuffix(".0")
+
+
 def small(value: float, digits: int) -> str:
     """3.1e-6, without the zero that printf puts into exponents."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
