@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.data import ArmData
 from ulna.arm.joint import Joint

@@ -1,11 +1,11 @@
-"""Whether stated uncertainties hold on readings that a fit has not seen, as `evaluate` and `cross-validate` print it."""
+"""Whether stated uncertainties hold on readings that a fit has not seen, as they are printed."""
 
 from __future__ import annotations
 
 from rich.console import RenderableType
 from rich.text import Text
 
-from ulna.calibration.coverage import P, Coverage
+from ulna.calibration.coverage import Coverage, P
 from ulna.calibration.likely import Cause
 from ulna.cli.printed.tables import table
 
@@ -52,8 +52,8 @@ def _too_large(found: Coverage) -> str:
     if part is None:
         return ""
     return (
-        f"The stated uncertainties are larger than they need be here: {part:.2g} of them would do. Likely: the noise or an "
-        "artefact's u is stated too large, or these readings are better than the calibration's."
+        f"The stated uncertainties are larger than they need be here: {part:.2g} of them would do. Likely: the noise "
+        "or an artefact's u is stated too large, or these readings are better than the calibration's."
     )
 
 

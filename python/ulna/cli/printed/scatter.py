@@ -26,10 +26,10 @@ def scatter(result: Result) -> str:
 def _of_readings(found: ReadingScatter, loss: str) -> str:
     if found.touch_mm is not None:
         freedom = "" if found.degrees_of_freedom is None else f", {_freedom(found.degrees_of_freedom)}"
-        return (
-            f"Noise is not stated: the residuals say {uncertainty(found.touch_mm)} mm per coordinate of a touch{freedom}, "
-            "and that is in every uncertainty."
-        )
+        if found.degrees_of_freedom is not None and found.degrees_of_freedom == found.places:
+            freedom += f" for {found.places} places"
+        touch = f"{uncertainty(found.touch_mm)} mm per coordinate of a touch{freedom}"
+        return f"Noise is not stated: the residuals say {touch}, and that is in every uncertainty."
     factor = found.factor or 1.0
     if factor == 1.0 or (loss != "none" and abs(factor - 1.0) < _ALIKE):
         return ""
