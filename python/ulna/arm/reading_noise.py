@@ -37,6 +37,11 @@ class ReadingNoise:
     """Whether `seat_mm` is from residuals."""
 
     @property
+    def known(self) -> bool:
+        """Whether anything is known of it."""
+        return self.encoder_rad is not None or self.variance_mm2 > 0.0
+
+    @property
     def variance_mm2(self) -> float:
         """Of a tip coordinate, the encoders aside."""
         return (self.seat_mm or 0.0) ** 2 + self.unexplained_mm**2

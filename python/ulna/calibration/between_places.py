@@ -47,12 +47,14 @@ class BetweenPlaces:
 
 
 def between_places(assembled: Assembled, fitted: _core.Fitted) -> BetweenPlaces | None:
-    """None where there is one place, nothing is known of the scatter, or there are very many readings."""
-    variance = fitted.variance
-    if not np.isfinite(fitted.covariance).all() or not variance > 0.0 or fitted.observations > MOST_EQUATIONS:
+    """None where there is one place, nothing was fitted or is known of the scatter, or there are very many readings."""
+    variance, covariance = fitted.variance, fitted.covariance
+    if not covariance.size or not np.isfinite(covariance).all() or not variance > 0.0:
+        return None
+    if fitted.observations > MOST_EQUATIONS:
         return None
     rows, residuals, standing = _core.rows_of_fit(assembled.problem, assembled.hold, fitted)
-    root = _root(fitted.covariance / variance)
+    root = _root(covariance / variance)
     starts = np.flatnonzero(np.diff(standing, prepend=-1))
     ends = np.append(starts[1:], len(standing))
     if len(starts) < 2 or not root.shape[1]:

@@ -84,10 +84,10 @@ class Coverage:
         return [(name, share) for name, share in both if share is not None]
 
     @property
-    def too_small(self) -> float | None:
-        """The larger factor by which uncertainties of points or lengths are too small, beyond chance; None where they
-        are not."""
-        return max((share.factor or 1.0 for _, share in self.shares if share.too_small), default=None)
+    def too_small(self) -> dict[str, float]:
+        """By what uncertainties of points or lengths are too small, beyond chance; a factor of 1 where they are
+        too few to say it. Empty where they hold."""
+        return {name: share.factor or 1.0 for name, share in self.shares if share.too_small}
 
     @property
     def too_large(self) -> float | None:
@@ -107,7 +107,7 @@ class Judged:
     def coverage(self, likely: Sequence[Cause] = ()) -> Coverage:
         """Of all of them; likely: why they may be too small, said where they are."""
         found = Coverage(_share(self.points), _share(self.lengths))
-        return replace(found, likely=list(likely)) if found.too_small is not None else found
+        return replace(found, likely=list(likely)) if found.too_small else found
 
     @staticmethod
     def together(parts: Sequence[Judged]) -> Judged:
@@ -121,8 +121,8 @@ class Judged:
 
 def judged(arm: Arm, noise: ReadingNoise, study: Study) -> Judged:
     """The study's readings by an arm that was not fitted to them, and by what is known of it; those that depend on what
-    was not determined are left out. Nothing of an arm of which no uncertainty is known."""
-    if arm.uncertainty is None or not np.isfinite(arm.uncertainty.matrix).all():
+    was not determined are left out. Nothing where no uncertainty is known of the arm, or nothing of its readings."""
+    if arm.uncertainty is None or arm.uncertainty.why_none is not None or not noise.known:
         return Judged(np.zeros(0), np.zeros(0))
     parts = [
         part

@@ -39,10 +39,10 @@ def coverage_report(found: Coverage | None) -> list[RenderableType]:
 
 
 def _too_small(found: Coverage) -> str:
-    factor = found.too_small
-    if factor is None:
+    if not found.too_small:
         return ""
-    by = f" by a factor of {factor:.2g}" if factor > 1.0 else ""
+    factors = ", ".join(f"{factor:.2g} ({name})" for name, factor in found.too_small.items() if factor > 1.0)
+    by = f" by a factor of {factors}" if factors else ""
     why = f" Likely: {'; '.join(_CAUSES[cause] for cause in found.likely)}." if found.likely else ""
     return f"The stated uncertainties are too small{by} here.{why}"
 

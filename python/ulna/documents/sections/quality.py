@@ -45,7 +45,7 @@ def _coverage(content: Content, words: Words) -> list[Block]:
     page: list[Block] = [Heading(title), table("coverage", title, words, columns, rows, left=2)]
     for judged in content.coverage:
         of, found = words(f"readings.{judged.readings}"), judged.coverage
-        if found.too_small is not None:
+        if found.too_small:
             page.append(Paragraph(_too_small(of, found, words), "missing"))
         elif found.too_large is not None:
             page.append(Paragraph(words("coverage.too-large", of=of, factor=own(f"{found.too_large:.2g}")), "note"))
@@ -58,7 +58,8 @@ def _counted(share: Share) -> list[str]:
 
 
 def _too_small(of: Text, found: Coverage, words: Words) -> Text:
-    said = words("coverage.too-small", of=of, factor=own(f"{found.too_small:.2g}"))
+    factors = [(f"{factor:.2g} (", *words(f"coverage.{name}"), ")") for name, factor in found.too_small.items()]
+    said = words("coverage.too-small", of=of, factor=joined(factors, ", "))
     causes = [words(f"coverage.likely-{cause}") for cause in found.likely]
     return joined([said, (*words("coverage.likely"), " ", *joined(causes, "; "), ".")], " ") if causes else said
 
