@@ -216,9 +216,9 @@ def test_held_parameters_count_as_exact_and_are_told(calibrated) -> None:
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
-    """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage.py does it
+    """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage does it
     a thousand times."""
-    from benchmarks.coverage import by_calibrations, by_covariance
+    from benchmarks.coverage.virtual import by_calibrations, by_covariance
 
     held: dict[str, list[bool]] = {}
     truth = true_arm(SEVEN)

@@ -243,7 +243,7 @@ def _points(scene: _Scene, tips: F64, at: F64, root: F64, own: F64) -> F64:
     else:
         if count < 2:
             return np.zeros(0)
-        stood, moves = _motion(tips, at)
+        stood, moves = fitted_motion(tips, at)
         left = tips - stood
         flat = root.reshape(3 * count, -1)
         kept = (flat - moves @ (moves.T @ flat)).reshape(count, 3, -1)
@@ -275,7 +275,7 @@ def _squared_radius(dimensions: int, freedom: float) -> float:
     return dimensions * float(fisher(dimensions, freedom, P))
 
 
-def _motion(tips: F64, at: F64) -> tuple[F64, F64]:
+def fitted_motion(tips: F64, at: F64) -> tuple[F64, F64]:
     """Where features (N, 3) stand that fit tips best, and an orthonormal basis (3N, k) of how they could have moved."""
     middle_at, middle = at.mean(axis=0), tips.mean(axis=0)
     spread = at - middle_at

@@ -140,7 +140,7 @@ class FittedStudy:
 
     @cached_property
     def _between(self) -> BetweenPlaces | None:
-        return between_places(self.assembled, self.core)
+        return between_places(self.study, self._arm, self.assembled, self.core)
 
     @cached_property
     def _reading_scatter(self) -> ReadingScatter | None:

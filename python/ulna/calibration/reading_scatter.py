@@ -50,7 +50,7 @@ def _freedom(core: _core.Fitted, between: BetweenPlaces | None) -> tuple[float, 
         return freedom, freedom
     if core.estimated and between.few:  # one of them may be unlike the next in either
         return min(freedom, between.places), min(freedom, between.places)
-    return freedom, min(freedom, between.places) if between.factor > 1.0 else freedom
+    return freedom, freedom
 
 
 def _ends(group: Readings) -> int:

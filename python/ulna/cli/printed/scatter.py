@@ -45,8 +45,7 @@ def _of_readings(found: ReadingScatter, loss: str) -> str:
 def _of_places(found: ReadingScatter) -> str:
     if found.places is None:
         return ""
-    few = found.parameter_degrees_of_freedom is not None and found.parameter_degrees_of_freedom <= found.places
-    few = few and found.places < _FEW
+    few = found.parameter_degrees_of_freedom == found.places
     if found.place_factor is not None and found.place_factor > 1.0:
         text = (
             f"In a place that is left out the arm errs more than that: the parameters' u is {found.place_factor:.2g} "
@@ -56,10 +55,6 @@ def _of_places(found: ReadingScatter) -> str:
     if few:
         return f"There are only {found.places} places to see it in: intervals are wide for it."
     return ""
-
-
-#: with fewer places, what they show is itself known to a quarter only
-_FEW = 10
 
 
 def _freedom(value: float) -> str:

@@ -38,12 +38,11 @@ def u_comes_from(content: Content, words: Words) -> Text:
     """Of the noise that was stated, of the residuals, or of both."""
     freedom, found = content.parameters.degrees_of_freedom, content.fit.reading_scatter
     if math.isinf(freedom):
-        return words("parameters.stated")
+        elsewhere = found is not None and (found.place_factor or 1.0) > 1.0
+        return words("parameters.places" if elsewhere else "parameters.stated")
     shown = own(degrees_of_freedom(freedom))
-    if content.fit.chi2_per_dof is None:
+    if found is None or found.factor is None:
         return words("parameters.estimated", freedom=shown)
-    if found is None or found.factor in (None, 1.0):
-        return words("parameters.places", freedom=shown)
     return words("parameters.scaled", factor=own(f"{found.factor:.3g}"), freedom=shown)
 
 
