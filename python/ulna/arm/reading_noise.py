@@ -94,7 +94,9 @@ def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit:
     before there was that table, and no noise was stated.
     """
     stated = noise if isinstance(noise, dict) else {}
-    shown = scatter if isinstance(scatter, dict) else {}
+    if not (scatter is None or isinstance(scatter, dict)):
+        damaged(path, "fit.reading_scatter", f"got {str(scatter)[:40]!r}, expected a table")
+    shown = scatter or {}
     factor = _positive(shown, "factor", "fit.reading_scatter.factor", path)
     less = 1.0 if factor is None else min(factor, 1.0)
     encoder_rad = _encoders(stated.get("encoder_rad"), arm, path)
@@ -102,9 +104,9 @@ def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit:
     estimated_mm = _positive(shown, "touch_mm", "fit.reading_scatter.touch_mm", path)
     key = "parameter_degrees_of_freedom"
     of_parameters = _positive(shown, key, f"fit.reading_scatter.{key}", path)
-    if scatter is None and noise is None:
+    if scatter is None and noise is None and freedom_of_fit is not None:
         key = "fit.degrees_of_freedom"
-        of_parameters = _positive({key: freedom_of_fit}, key, key, path)
+        of_parameters = _positive({key: freedom_of_fit}, key, key, path) or 0.0
     freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
     return ReadingNoise(
         encoder_rad=None if encoder_rad is None else less * encoder_rad,
