@@ -37,6 +37,11 @@ class ReadingNoise:
     """Whether `seat_mm` is from residuals."""
 
     @property
+    def known(self) -> bool:
+        """Whether anything is known of it."""
+        return self.encoder_rad is not None or self.variance_mm2 > 0.0
+
+    @property
     def variance_mm2(self) -> float:
         """Of a tip coordinate, the encoders aside."""
         return (self.seat_mm or 0.0) ** 2 + self.unexplained_mm**2
@@ -79,13 +84,19 @@ def noise_of_document(document: dict[str, Any], arm: ArmData, path: Path) -> Rea
     provenance, fit = document.get("provenance"), document.get("fit")
     noise = provenance.get("noise") if isinstance(provenance, dict) else None
     scatter = fit.get("reading_scatter") if isinstance(fit, dict) else None
-    return noise_of(noise, scatter, arm, path)
+    return noise_of(noise, scatter, arm, path, fit.get("degrees_of_freedom") if isinstance(fit, dict) else None)
 
 
-def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path) -> ReadingNoise:
-    """From the tables `provenance.noise` and `fit.reading_scatter` of a result. Raises UlnaInputError."""
+def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit: Any = None) -> ReadingNoise:
+    """From the tables `provenance.noise` and `fit.reading_scatter` of a result. Raises UlnaInputError.
+
+    freedom_of_fit: its degrees of freedom; those of the parameters where it says nothing of its readings' scatter, as
+    before there was that table, and no noise was stated.
+    """
     stated = noise if isinstance(noise, dict) else {}
-    shown = scatter if isinstance(scatter, dict) else {}
+    if not (scatter is None or isinstance(scatter, dict)):
+        damaged(path, "fit.reading_scatter", f"got {str(scatter)[:40]!r}, expected a table")
+    shown = scatter or {}
     factor = _positive(shown, "factor", "fit.reading_scatter.factor", path)
     less = 1.0 if factor is None else min(factor, 1.0)
     encoder_rad = _encoders(stated.get("encoder_rad"), arm, path)
@@ -93,6 +104,9 @@ def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path) -> ReadingNoise
     estimated_mm = _positive(shown, "touch_mm", "fit.reading_scatter.touch_mm", path)
     key = "parameter_degrees_of_freedom"
     of_parameters = _positive(shown, key, f"fit.reading_scatter.{key}", path)
+    if scatter is None and noise is None and freedom_of_fit is not None:
+        key = "fit.degrees_of_freedom"
+        of_parameters = _positive({key: freedom_of_fit}, key, key, path) or 0.0
     freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
     return ReadingNoise(
         encoder_rad=None if encoder_rad is None else less * encoder_rad,
@@ -118,5 +132,5 @@ def _positive(table: dict[str, Any], key: str, where: str, path: Path) -> float 
     if value is None:
         return None
     if not (is_number(value) and value >= 0):
-        damaged(path, where, "expected a positive number")
+        damaged(path, where, f"got {str(value)[:40]!r}, expected a positive number")
     return float(value) or None

@@ -9,7 +9,7 @@ from ulna.artefacts.quantities import NAMES, QUANTITIES
 from ulna.calibration.identify import Identification, not_determined
 from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.summary import FitSummary, GroupFigures, Parameter
-from ulna.ground.digits import figure_mm, quantity, uncertainty
+from ulna.ground.digits import degrees_of_freedom, figure_mm, quantity, uncertainty
 from ulna.ground.shown import About, Table
 
 WORDS = {name: words for each in QUANTITIES for name, words in each.words().items()}
@@ -31,7 +31,7 @@ def about_result(
     counts = {each: sum(row.status == each for row in parameters) for each in ("fitted", "held", "not-determined")}
     facts = {
         "fit": f"{ended} ({fit.termination}, {fit.iterations} iterations)",
-        "readings": f"{fit.readings}, {fit.degrees_of_freedom} degrees of freedom"
+        "readings": f"{fit.readings}, {degrees_of_freedom(fit.degrees_of_freedom)} degrees of freedom"
         + (f", chi² per degree {fit.chi2_per_dof:.3g}" if fit.chi2_per_dof is not None else ""),
         "parameters": ", ".join(f"{count} {each}" for each, count in counts.items() if count),
     }

@@ -61,10 +61,12 @@ class BetweenPlaces:
 
 
 def between_places(study: Study, arm: Arm, assembled: Assembled, fitted: _core.Fitted) -> BetweenPlaces | None:
-    """arm: the fitted one. None where there is one place, nothing is known of the scatter, an artefact is
+    """arm: the fitted one. None where there is one place, nothing was fitted or is known of the scatter, an artefact is
     less well known than that, or there are very many readings."""
-    variance = fitted.variance
-    if not np.isfinite(fitted.covariance).all() or not variance > 0.0 or fitted.observations > MOST_EQUATIONS:
+    variance, covariance = fitted.variance, fitted.covariance
+    if not covariance.size or not np.isfinite(covariance).all() or not variance > 0.0:
+        return None
+    if fitted.observations > MOST_EQUATIONS:
         return None
     if any(_uncertain(group, fitted, number) for number, group in enumerate(study.readings)):
         return None

@@ -10,7 +10,7 @@ from the same C and D.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -21,6 +21,7 @@ from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.artefacts.artefact import features_mm
 from ulna.artefacts.readings import Readings
+from ulna.calibration.likely import Cause
 from ulna.ground.arrays import F64, I64
 from ulna.ground.binomial import wilson
 from ulna.ground.quantiles import chi_squared, fisher, student
@@ -33,6 +34,8 @@ TOGETHER = 300
 """Touches of one standing whose motion is taken off together: their covariance is a matrix of 900 × 900."""
 LEAST = 20
 """Of fewer nothing is said of a factor."""
+MUCH = 0.75
+"""Intervals that would hold if they were this much of what they are, or less, are much too wide."""
 NEAR = 1e-6
 """Variances below this part of the largest of a point are what its motion took off."""
 SEED = 13
@@ -58,6 +61,11 @@ class Share:
         """Whether chance does not explain how few hold."""
         return self.high < P
 
+    @property
+    def too_large(self) -> bool:
+        """Whether so many hold that chance does not explain it, by intervals that are much wider than they need be."""
+        return self.low > P and self.factor is not None and self.factor < MUCH
+
 
 @dataclass(frozen=True)
 class Coverage:
@@ -66,6 +74,27 @@ class Coverage:
     points: Share | None
     """None where no feature has coordinates, or no uncertainty is known."""
     lengths: Share | None
+    likely: list[Cause] = field(default_factory=list)
+    """Where the intervals are too small: what may be why."""
+
+    @property
+    def shares(self) -> list[tuple[str, Share]]:
+        """Those that there are, each with what it is of: "points", "lengths"."""
+        both = (("points", self.points), ("lengths", self.lengths))
+        return [(name, share) for name, share in both if share is not None]
+
+    @property
+    def too_small(self) -> dict[str, float]:
+        """By what uncertainties of points or lengths are too small, beyond chance; a factor of 1 where they are
+        too few to say it. Empty where they hold."""
+        return {name: share.factor or 1.0 for name, share in self.shares if share.too_small}
+
+    @property
+    def too_large(self) -> float | None:
+        """The larger part of what was stated that would do, where all intervals that there are are much too wide."""
+        if not self.shares or not all(share.too_large for _, share in self.shares):
+            return None
+        return max(share.factor or 1.0 for _, share in self.shares)
 
 
 @dataclass(frozen=True)
@@ -75,9 +104,10 @@ class Judged:
     points: F64
     lengths: F64
 
-    def coverage(self) -> Coverage:
-        """Of all of them."""
-        return Coverage(_share(self.points), _share(self.lengths))
+    def coverage(self, likely: Sequence[Cause] = ()) -> Coverage:
+        """Of all of them; likely: why they may be too small, said where they are."""
+        found = Coverage(_share(self.points), _share(self.lengths))
+        return replace(found, likely=list(likely)) if found.too_small else found
 
     @staticmethod
     def together(parts: Sequence[Judged]) -> Judged:
@@ -91,8 +121,8 @@ class Judged:
 
 def judged(arm: Arm, noise: ReadingNoise, study: Study) -> Judged:
     """The study's readings by an arm that was not fitted to them, and by what is known of it; those that depend on what
-    was not determined are left out. Nothing of an arm of which no uncertainty is known."""
-    if arm.uncertainty is None or not np.isfinite(arm.uncertainty.matrix).all():
+    was not determined are left out. Nothing where no uncertainty is known of the arm, or nothing of its readings."""
+    if arm.uncertainty is None or arm.uncertainty.why_none is not None or not noise.known:
         return Judged(np.zeros(0), np.zeros(0))
     parts = [
         part
@@ -233,7 +263,8 @@ def _points(scene: _Scene, tips: F64, at: F64, root: F64, own: F64) -> F64:
     told = dimensions > 0
     radius = [_squared_radius(d, float(f"{v:.3g}")) for d, v in zip(dimensions[told], freedom[told], strict=True)]
     ratios: F64 = np.sqrt(squared[told] / radius)
-    return ratios
+    # of two touches the motion leaves one error: one is as far off as the other, and is no second witness
+    return ratios[:1] if count == 2 and scene.group.artefact.frame != "arm" else ratios
 
 
 @lru_cache(maxsize=4096)

@@ -18,6 +18,7 @@ from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.calibration.about import about_evaluation
 from ulna.calibration.coverage import Coverage, judged
 from ulna.calibration.figures import figures
+from ulna.calibration.likely import likely_causes
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
@@ -96,7 +97,9 @@ def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int],
         readings=sum(len(group) for group in study.readings),
         residuals=residual_table(fitting, fitted),
         provenance=provenance(study, datetime.now(UTC)),
-        coverage=None if arm.uncertainty is None else judged(arm, noise, fitting).coverage(),
+        coverage=None
+        if arm.uncertainty is None
+        else judged(arm, noise, fitting).coverage(likely_causes(arm, noise, fitting, elsewhere=True)),
     )
 
 

@@ -28,7 +28,7 @@ class Parameter:
     start: float
     value: float
     u: float | None
-    """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
+    """Standard uncertainty; None where held, not determined, or where nothing tells it."""
     status: Status
     prior: dict[str, float] | None = None
     """What was known of it before: value and u, where the fit used it."""

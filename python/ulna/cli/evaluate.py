@@ -46,13 +46,13 @@ def evaluate(
 
     if out is not None:
         check_output(out, FILES, force)
-    judged = Arm.load(arm)
+    Arm.load(arm)  # what is wrong with it is said before the study is read
     wanted: Any = rows or rows_to_judge(study)
     loaded = Study.load(study, wanted)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *(file.path for file in loaded.files)])
     with output.progress_bar() as progress:
-        evaluation = run_evaluate(judged, loaded, progress)
+        evaluation = run_evaluate(arm, loaded, progress)
     if out is not None:
         evaluation.save(out, force)
     if as_json:

@@ -74,6 +74,11 @@ def percent(share: float) -> str:
     return fixed(100.0 * share, max(1 - _power(100.0 * tail), 0))
 
 
+def degrees_of_freedom(value: float) -> str:
+    """A number that need not be whole: 76, 44.3; below one with two digits."""
+    return f"{value:.2g}" if value < 1.0 else f"{value:.1f}".removesuffix(".0")
+
+
 def small(value: float, digits: int) -> str:
     """3.1e-6, without the zero that printf puts into exponents."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")

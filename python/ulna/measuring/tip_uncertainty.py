@@ -41,7 +41,7 @@ class TipUncertainty:
         self._probe_names = list(arm.probes)
         self._covariances = [_covariance(arm, name, noise.encoder_rad) for name in arm.probes]
         self._own_mm2, self._moves_mm = noise.variance_mm2, noise.moves_mm
-        self._estimated = bool(np.isfinite(arm.uncertainty.matrix).all())
+        self._unknown = arm.uncertainty.why_none
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
         index = {name: k for k, name in enumerate(arm.parameter_names)}
         self._lost_columns = np.array(sorted({index[n] for d in self._lost for n in d["combination"]}), dtype=np.int64)
@@ -63,7 +63,7 @@ class TipUncertainty:
 
         NaN where the tip depends on what was not determined. conditions: as `Arm.conditions`.
         """
-        if not self._estimated:
+        if self._unknown is not None:
             return np.full((len(q_rad), 6), np.nan)
 
         def block(start: int) -> F64:
@@ -97,11 +97,8 @@ class TipUncertainty:
     @property
     def notes(self) -> list[str]:
         """What was left empty, why, and what to do about it."""
-        if not self._estimated:
-            return [
-                "u_x, u_y, u_z are left empty: the calibration had no degrees of freedom to estimate uncertainties "
-                "from. Calibrate with more readings, or state the noise in the study."
-            ]
+        if self._unknown is not None:
+            return [f"u_x, u_y, u_z are left empty: {self._unknown.because}. {self._unknown.remedy}"]
         return [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
 
 

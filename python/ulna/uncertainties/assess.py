@@ -194,7 +194,7 @@ def assess(
         arms=None if arms is None else arms.shares,
         left_out=[
             *([] if arms is None else arms.assumed),
-            *left_out(arm, task.noise, task.u_temperature_k, found.exact),
+            *left_out(arm, task.noise, task.u_temperature_k, found.exact, task.touched.measurand.left_out),
         ],
         seed=seed,
         most_trials=most_trials,
@@ -208,11 +208,9 @@ def check_known(arm: Arm) -> ParameterCovariance:
             f"arm '{arm.name}': no uncertainty is known of it; expected the result.json of a calibration, not an arm "
             "file."
         )
-    if not np.isfinite(arm.uncertainty.matrix).all():
-        raise UlnaInputError(
-            f"arm '{arm.name}': its calibration had no degrees of freedom to estimate uncertainties from. Calibrate "
-            "with more readings, or state the noise in the study."
-        )
+    unknown = arm.uncertainty.why_none
+    if unknown is not None:
+        raise UlnaInputError(f"arm '{arm.name}': no uncertainty is known of it: {unknown.because}. {unknown.remedy}")
     return arm.uncertainty
 
 

@@ -77,8 +77,23 @@ def fit(sheet: Sheet, results: Element, result: Result) -> None:
     ]
     if result.fit.chi2_per_dof is not None:
         figures.append(("chi2", result.fit.chi2_per_dof, "1"))
+    figures += _scatter(result)
     for key, value, unit in figures:
         real(sheet, quantity(sheet, data, sheet.own(f"dcc.{key}")), value, unit)
+
+
+def _scatter(result: Result) -> list[tuple[str, float, str]]:
+    """What the residuals say of a reading's noise."""
+    found = result.fit.reading_scatter
+    if found is None:
+        return []
+    each = [
+        ("touch", found.touch_mm, "mm"),
+        ("factor", found.factor, "1"),
+        ("unexplained", found.unexplained_mm, "mm"),
+        ("place-factor", found.place_factor, "1"),
+    ]
+    return [(key, value, unit) for key, value, unit in each if value is not None]
 
 
 def figures(sheet: Sheet, results: Element, result: Result) -> None:

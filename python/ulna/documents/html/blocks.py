@@ -53,6 +53,7 @@ TONES: dict[Tone, str] = {
 #: table → further classes: tall ones scroll, those of sentences break their lines
 LOOKS = {
     "quality": "",
+    "coverage": "",
     "parameters": "",
     "cylindrical": "",
     "directions": " prose",

@@ -31,6 +31,7 @@ LAYOUTS: dict[str, Layout] = {
         | _shares(1, *(f"{what}-{when}" for what in ("mean", "rms", "sigma", "max") for when in ("before", "after"))),
         size_pt=7.5,
     ),
+    "coverage": Layout({"quantity": 1, "readings": 2, **_shares(1, "judged", "inside", "share"), "interval": 1.6}),
     "artefacts": Layout({"artefact": 1.5, "kind": 1, "calibrated": 2, "u": 1.5, "placements": 0, "count": 0}),
     "equipment": Layout({"standard": 3, "serial": 2, "certificate": 2, "certified-by": 3}, size_pt=8.5),
     "extras": Layout(
