@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,7 @@ def test_intervals_hold_whatever_was_stated(pairs: list[Pair], factor: float | N
 
 
 TOUCHES = 12
+PAIRS_OF_FIVE = list(combinations(range(5), 2))
 
 
 def touched(truth: Arm, rng: np.random.Generator) -> Study:
@@ -170,3 +172,24 @@ def test_a_saved_result_is_judged_as_the_one_in_memory(pairs: list[Pair], tmp_pa
     assert cross.coverage.lengths.count == 70
     document = cross.as_dict()["coverage"]
     assert document["lengths"]["inside"] == cross.coverage.lengths.inside
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [None, 0.5])
+def test_measured_lengths_have_the_scatter_in_their_u(pairs: list[Pair], factor: float | None) -> None:
+    """`measure`, of a plate's touches by their angles alone, against its own distances: ten of each standing."""
+    ratios = []
+    for bar, plate in pairs:
+        result = ulna.calibrate(replace(bar, noise=stated(factor)))
+        measured = ulna.measure(result, plate.readings[0].q_rad, "bent")
+        assert result.noise.variance_mm2 > (0.7 * SEAT_MM) ** 2
+        at_mm = np.array(list(plate.readings[0].artefact.features.values()))
+        first, second = (np.array(ends) for ends in zip(*PAIRS_OF_FIVE, strict=True))
+        for standing in range(6):
+            lengths_mm, u_mm = measured.lengths(5 * standing + first, 5 * standing + second)
+            assert u_mm is not None
+            assert (u_mm**2 > 2.0 * result.noise.variance_mm2).all()  # of both touches alone
+            ratios.append((lengths_mm - np.linalg.norm(at_mm[first] - at_mm[second], axis=1)) / u_mm)
+    within = np.abs(np.concatenate(ratios)) <= 1.99  # t of some 70 degrees of freedom
+    assert len(within) == 60 * ARMS
+    assert 0.92 <= within.mean() <= 0.98

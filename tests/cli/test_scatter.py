@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
-from tests.cli_runs import write_lengths
+from tests.cli_runs import run, write_lengths
 
 import ulna
 from ulna import Result, Study
@@ -116,3 +116,22 @@ def test_what_holds_is_counted_and_no_more() -> None:
 def test_uncertainties_that_are_far_too_large_are_called_so_too() -> None:
     assert "0.31 of them would do" in " ".join(printed(Coverage(LARGE, LARGE), 80).split())
     assert "would do" not in printed(Coverage(LARGE, RIGHT), 80)
+
+
+def test_readings_that_were_fitted_are_told_to_flatter(study: Path, tmp_path: Path) -> None:
+    """Of a result, by its files; fresh readings, and an arm file, are judged without a word."""
+    out = tmp_path / "out"
+    ulna.calibrate(Study.load(study)).save(out)
+    fresh = write_lengths(tmp_path / "fresh", rows=40)
+
+    def printed_of(arm: Path, judged: Path) -> str:
+        done = run("evaluate", arm, judged)
+        assert done.returncode == 0
+        return " ".join(done.stdout.split())
+
+    assert "calibrated by these readings: they flatter" in printed_of(out, study)
+    assert "intervals" not in printed_of(out, study)
+    assert "flatter" not in printed_of(out, fresh)
+    assert "lengths 40 " in printed_of(out / "result.json", fresh)
+    assert "flatter" not in printed_of(out / "arm.toml", study)
+    assert "intervals" not in printed_of(out / "arm.toml", study)

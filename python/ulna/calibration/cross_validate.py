@@ -75,7 +75,7 @@ class CrossValidation(Shown):
 
     def about(self) -> About:
         """Over all groups."""
-        return about_cross_validation(self.by, self.groups, self.before, self.after)
+        return about_cross_validation(self.by, self.groups, self.before, self.after, self.coverage)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `cross-validation.json` into a folder. Raises UlnaInputError."""

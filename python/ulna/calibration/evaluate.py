@@ -68,7 +68,7 @@ class Evaluation(Shown):
 
     def about(self) -> About:
         """Over all readings."""
-        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts)
+        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts, self.coverage)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `evaluation.json` and `residuals.csv` into a folder: both or none. Raises UlnaInputError."""

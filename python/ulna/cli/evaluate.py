@@ -39,7 +39,7 @@ def evaluate(
     from ulna.calibration.evaluate import FILES
     from ulna.calibration.evaluate import evaluate as run_evaluate
     from ulna.cli import output
-    from ulna.cli.printed.evaluation import evaluation_report
+    from ulna.cli.printed.evaluation import evaluation_report, were_fitted
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.study.file import rows_to_judge
     from ulna.study.study import Study
@@ -58,6 +58,6 @@ def evaluate(
     if as_json:
         output.print_json(evaluation.as_dict())
     else:
-        output.print_renderable(*evaluation_report(evaluation))
+        output.print_renderable(*evaluation_report(evaluation, were_fitted(arm, evaluation)))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")

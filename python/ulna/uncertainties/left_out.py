@@ -21,14 +21,16 @@ def left_out(
         left.append("how well a touch finds its place (a seat, a surface): nobody stated it")
     if TEMPERATURE in arm.needs and not u_temperature_k:
         left.append("the uncertainty of the temperature: nobody stated it")
-    shown = noise.estimated or noise.unexplained_mm > 0.0
-    if shown:
+    absent = [effect.left_out for effect in EFFECTS.values() if effect not in arm.effects and not effect.of_first]
+    if noise.estimated or noise.unexplained_mm > 0.0:
         left.append(
             "how a touch's scatter changes over the volume: that of the calibration's touches counts everywhere"
         )
-    absent = [effect for effect in EFFECTS.values() if effect not in arm.effects and not effect.of_first]
-    partly = "; what it added to the scatter of the calibration's touches is in" if shown else ""
-    left += [f"{effect.left_out}: the arm's model has none{partly}" for effect in absent]
+        if absent:
+            beyond = "what the arm's model has not, beyond what it added to the scatter of the calibration's touches"
+            left.append(f"{beyond}: {', '.join(absent)}")
+    else:
+        left += [f"{each}: the arm's model has none" for each in absent]
     left += more
     left.append("the form and the temperature of what is measured")
     left.append("errors of the calibration's artefact beyond the u that its study states")

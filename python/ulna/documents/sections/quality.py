@@ -58,10 +58,13 @@ def _counted(share: Share) -> list[str]:
 
 
 def _too_small(of: Text, found: Coverage, words: Words) -> Text:
-    factors = [(f"{factor:.2g} (", *words(f"coverage.{name}"), ")") for name, factor in found.too_small.items()]
-    said = words("coverage.too-small", of=of, factor=joined(factors, ", "))
+    factors = [
+        words("coverage.factor", factor=own(f"{factor:.2g}"), quantity=words(f"coverage.{name}"))
+        for name, factor in found.too_small.items()
+    ]
+    said = words("coverage.too-small", of=of, factors=joined(factors, ", "))
     causes = [words(f"coverage.likely-{cause}") for cause in found.likely]
-    return joined([said, (*words("coverage.likely"), " ", *joined(causes, "; "), ".")], " ") if causes else said
+    return joined([said, words("coverage.likely", causes=joined(causes, "; "))], " ") if causes else said
 
 
 def _cells(row: QualityRow) -> list[Text]:
