@@ -225,7 +225,8 @@ pub fn fit_from(
     let observations = problem.equations();
     let placement_unknowns = problem.placement_unknowns();
     let stated = problem.noise().is_some();
-    let (shown, standing) = at_minimum(problem, free, &solution, &mut judged, &whitened, monitor)?;
+    let (shown, standing) =
+        at_minimum(problem, free, &solution.parameters, &solution.pins, &mut judged, &whitened, monitor)?;
     let considered = problem.considered_u(free);
     problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);

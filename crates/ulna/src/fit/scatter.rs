@@ -10,9 +10,9 @@ use crate::artefacts::Whitened;
 use crate::error::Result;
 use crate::fit::judged::{Judged, judge};
 use crate::fit::robust::Standing;
-use crate::fit::solve::Solution;
 use crate::monitor::Monitor;
 use crate::problem::Problem;
+use crate::problem::pins::Pin;
 use crate::problem::priors::Prior;
 use crate::simd::{Columns, padded};
 use crate::solver::decomposition::Decomposition;
@@ -119,12 +119,13 @@ const MOST_FITTED: f64 = 0.4;
 pub(crate) fn at_minimum(
     problem: &mut Problem,
     free: &[usize],
-    solution: &Solution,
+    parameters: &[f64],
+    pins: &[Pin],
     judged: &mut Judged,
     whitened: &[Whitened],
     monitor: &dyn Monitor,
 ) -> Result<(Shown, Standing)> {
-    let (parameters, stated) = (&solution.parameters, problem.noise().is_some());
+    let stated = problem.noise().is_some();
     let (least, mut unit) = (least_scatter(problem), problem.unit());
     let priors = problem.priors().iter().any(|prior| free.contains(&prior.parameter));
     let known_before = priors || problem.considered_u(free).iter().any(|u| *u > 0.0);
@@ -148,7 +149,7 @@ pub(crate) fn at_minimum(
         unit = next;
         if priors {
             problem.set_unit(unit);
-            *judged = judge(problem, free, &solution.pins, parameters, monitor)?;
+            *judged = judge(problem, free, pins, parameters, monitor)?;
         }
         if problem.loss().is_some() {
             break;
