@@ -31,12 +31,18 @@ pub(crate) fn least_scatter(problem: &Problem) -> f64 {
 /// Chi² per degree of freedom beyond this many standard deviations from one contradicts the stated noise: chance does so in
 /// one calibration of a hundred.
 const CONTRADICTS: f64 = 2.576;
+/// Readings that scatter by less than a tenth of the stated noise have none: they were made without, or are copies. They
+/// say nothing of what readings with noise do, for which it was stated.
+const WITHOUT_NOISE: f64 = 1e-2;
 
 /// The variance of a whitened residual: as the residuals show it, but where noise is stated and they do not contradict it,
 /// one.
 pub(crate) fn believed(per_dof: f64, degrees_of_freedom: f64, stated: bool) -> f64 {
     if !stated {
         return per_dof;
+    }
+    if per_dof < WITHOUT_NOISE {
+        return 1.0;
     }
     // the cube root of chi² is nearly normal (Wilson and Hilferty 1931)
     let spread = 2.0 / (9.0 * degrees_of_freedom);
@@ -133,7 +139,8 @@ pub(crate) fn at_minimum(
     let standing = Standing::of(whitened, shown.degrees_of_freedom, least);
     if let (Some(loss), Some(_)) = (problem.loss(), shown.per_dof) {
         let told = Standing::fitted(whitened, shown.degrees_of_freedom) <= MOST_FITTED;
-        let variance = standing.variance(whitened, loss, shown.degrees_of_freedom);
+        let seen = standing.variance(whitened, loss, shown.degrees_of_freedom);
+        let variance = if stated && seen < WITHOUT_NOISE { 1.0 } else { seen };
         shown = Shown {
             per_dof: Some(variance),
             variance: if told { variance } else { f64::NAN },
