@@ -24,7 +24,7 @@ Counted = tuple[int, int, int]
 
 def freedom(result: ulna.Result) -> float:
     """Degrees of freedom of what a calibration says is uncertain: infinite where the stated noise stands."""
-    return result.noise.parameter_freedom
+    return result.noise.degrees_of_freedom
 
 
 def factor(result: ulna.Result) -> float:

@@ -20,7 +20,8 @@ import ulna
 from ulna import Arm, Study
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.reading_noise import UNKNOWN, ReadingNoise
-from ulna.calibration.coverage import Coverage, Judged, P, judged
+from ulna.calibration.coverage import Coverage, Judged, P
+from ulna.calibration.held_out import judged
 from ulna.simulation.file import load_simulation
 from ulna.study.data import Noise
 

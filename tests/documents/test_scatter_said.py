@@ -81,8 +81,7 @@ def test_what_residuals_say_is_said(content: Content, language: str) -> None:
     assert "0.007" in said
     assert "76" in said
     more = ReadingScatter(
-        factor=1.93, unexplained_mm=0.0123, degrees_of_freedom=12.3, places=3, place_factor=4.9,
-        parameter_degrees_of_freedom=3.0,
+        factor=1.93, unexplained_mm=0.0123, degrees_of_freedom=3.0, places=3, place_factor=4.9,
     )  # fmt: skip
     changed = replace(content, fit=replace(content.fit, reading_scatter=more, chi2_per_dof=3.7))
     scaled, unexplained, places, few = map(plain, scatter(changed, words))

@@ -176,7 +176,7 @@ def test_repeated_calibrations_start_where_the_calibration_ended(calibrated) -> 
 def test_an_estimated_noise_widens_the_interval(calibrated) -> None:
     """Ten degrees of freedom: Student's t by the first order, a multivariate t by trial."""
     _, arm = calibrated
-    task = task_of("length", [0, 1], poses(2, 11), noise=ReadingNoise(parameter_freedom=10.0))
+    task = task_of("length", [0, 1], poses(2, 11), noise=ReadingNoise(degrees_of_freedom=10.0))
     (value,) = assess(arm, task, seed=1).values
     assert value.k == pytest.approx(2.2281, abs=1e-4)
     assert value.monte_carlo is not None

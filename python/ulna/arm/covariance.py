@@ -59,3 +59,15 @@ class ParameterCovariance(Shown):
         return About(
             f"Covariance of {len(self.names)} parameters, mm and rad{lost}", {}, [Table(["parameter", "u"], rows)]
         )
+
+
+def root_of(covariance: F64) -> F64:
+    """(k, k) → (k, k) a matrix whose product with its transpose it is.
+
+    A covariance is singular along what is held or open: by eigenvectors, of what is scaled alike.
+    """
+    scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    scale[scale == 0.0] = 1.0
+    sizes, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    root: F64 = scale[:, None] * vectors * np.sqrt(np.maximum(sizes, 0.0))
+    return root

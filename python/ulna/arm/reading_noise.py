@@ -30,9 +30,7 @@ class ReadingNoise:
     unexplained_mm: float = 0.0
     """Per coordinate: what the calibration's residuals showed beside the stated noise, which the model has not."""
     degrees_of_freedom: float = math.inf
-    """Of whatever the residuals showed of a touch."""
-    parameter_freedom: float = math.inf
-    """Degrees of freedom of the parameters' covariance: finite where it was scaled by what residuals showed."""
+    """Of whatever the residuals showed: of touches, and of the parameters' covariance, which was scaled by the same."""
     estimated: bool = False
     """Whether `seat_mm` is from residuals."""
 
@@ -90,7 +88,7 @@ def noise_of_document(document: dict[str, Any], arm: ArmData, path: Path) -> Rea
 def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit: Any = None) -> ReadingNoise:
     """From the tables `provenance.noise` and `fit.reading_scatter` of a result. Raises UlnaInputError.
 
-    freedom_of_fit: its degrees of freedom; those of the parameters where it says nothing of its readings' scatter, as
+    freedom_of_fit: its degrees of freedom; those that count where it says nothing of its readings' scatter, as
     before there was that table, and no noise was stated.
     """
     stated = noise if isinstance(noise, dict) else {}
@@ -102,18 +100,15 @@ def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit:
     encoder_rad = _encoders(stated.get("encoder_rad"), arm, path)
     seat_mm = _positive(stated, "seat_mm", "provenance.noise.seat_mm", path)
     estimated_mm = _positive(shown, "touch_mm", "fit.reading_scatter.touch_mm", path)
-    key = "parameter_degrees_of_freedom"
-    of_parameters = _positive(shown, key, f"fit.reading_scatter.{key}", path)
+    freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
     if scatter is None and noise is None and freedom_of_fit is not None:
         key = "fit.degrees_of_freedom"
-        of_parameters = _positive({key: freedom_of_fit}, key, key, path) or 0.0
-    freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
+        freedom = _positive({key: freedom_of_fit}, key, key, path) or 0.0
     return ReadingNoise(
         encoder_rad=None if encoder_rad is None else less * encoder_rad,
         seat_mm=estimated_mm if seat_mm is None else less * seat_mm,
         unexplained_mm=_positive(shown, "unexplained_mm", "fit.reading_scatter.unexplained_mm", path) or 0.0,
         degrees_of_freedom=math.inf if freedom is None else freedom,
-        parameter_freedom=math.inf if of_parameters is None else of_parameters,
         estimated=seat_mm is None and estimated_mm is not None,
     )
 

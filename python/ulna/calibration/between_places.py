@@ -18,10 +18,11 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.arm import Arm
-from ulna.arm.conditions import some_of
+from ulna.arm.covariance import root_of
 from ulna.artefacts.artefact import features_mm
 from ulna.artefacts.readings import Readings
-from ulna.calibration.coverage import fitted_motion
+from ulna.calibration.touched import touched
+from ulna.geometry.rigid import fitted_motion
 from ulna.ground.arrays import F64, I64
 from ulna.study.assembly import Assembled, conditions_of
 from ulna.study.study import Study
@@ -41,7 +42,6 @@ ALONE = 0.75
 nothing, and how wrong that is tells nothing of the rest."""
 SIGNIFICANT = 6.63
 """Twice the logarithm of the likelihoods' ratio that chance exceeds in one of a hundred."""
-FEW = 3
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,6 @@ class BetweenPlaces:
     factor: float
     """By what the parameters' uncertainties are larger than the scatter of the readings makes them; 1 where chance
     explains it."""
-
-    @property
-    def few(self) -> bool:
-        """Whether so few places show neither how an arm errs in another one, nor how it scatters there."""
-        return self.places <= FEW
 
 
 def between_places(study: Study, arm: Arm, assembled: Assembled, fitted: _core.Fitted) -> BetweenPlaces | None:
@@ -103,7 +98,7 @@ def _of_standings(study: Study, arm: Arm, assembled: Assembled, fitted: _core.Fi
     rows, residuals, standing = _core.rows_of_fit(assembled.problem, assembled.hold, fitted)
     if not len(standing) or standing[0] == standing[-1]:
         return None
-    rows = rows @ _root(fitted.covariance / fitted.variance)
+    rows = rows @ root_of(fitted.covariance / fitted.variance)
     at_mm = _where(study, arm)
     region = np.arange(len(at_mm))
     if len(at_mm) > MOST_PLACES:
@@ -136,17 +131,15 @@ def _of_one_standing(study: Study, arm: Arm, fitted: _core.Fitted) -> list[Regio
     features = features_mm(group.artefact)
     if len(study.readings) > 1 or len(features) < LEAST_TOUCHES or len(group) < LEAST_TOUCHES:
         return None
-    names = [column for column in fitted.covariance_columns.tolist() if column < len(arm.parameter_names)]
-    q_rad = np.ascontiguousarray(group.q_rad)
-    said = conditions_of(study, arm, group)[0]
-    tips, by_arm = np.empty((len(group), 3)), np.empty((len(group), 3, len(names)))
-    for probe in np.unique(group.probe).tolist():
-        own = np.flatnonzero(group.probe == probe)
-        q, there = np.ascontiguousarray(q_rad[own]), some_of(said, own)
-        tips[own], by_arm[own] = arm.core.tip(q, probe, **there), arm.core.jacobian(q, probe, **there)[:, :, names]
+    of_arm = [column for column in fitted.covariance_columns.tolist() if column < len(arm.parameter_names)]
+    found = touched(arm, study, group, None)
+    tips = found.tips_mm
     stood, moves = fitted_motion(tips, features[group.feature])
     weight = fitted.weights(0)[:, None]
-    columns = np.concatenate([by_arm, moves.reshape(len(group), 3, -1)], axis=2) * weight[:, :, None]
+    columns = (
+        np.concatenate([found.by_parameter[:, :, of_arm], moves.reshape(len(group), 3, -1)], axis=2)
+        * weight[:, :, None]
+    )
     flat = columns.reshape(3 * len(group), -1)
     scale = np.linalg.norm(flat, axis=0)
     scale[scale == 0.0] = 1.0
@@ -193,13 +186,3 @@ def _factor(ratio: F64, square: F64) -> float:
     g2 = np.array([1.0, tried[best]])
     one, more = likelihood(g2)
     return float(np.sqrt(g2[1])) if more - one > SIGNIFICANT else 1.0
-
-
-def _root(covariance: F64) -> F64:
-    """A matrix whose product with its transpose it is."""
-    scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    scale[scale == 0.0] = 1.0
-    sizes, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-    kept = sizes > 1e-14 * max(float(sizes[-1]), 0.0)
-    root: F64 = scale[:, None] * vectors[:, kept] * np.sqrt(sizes[kept])
-    return root

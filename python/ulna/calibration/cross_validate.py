@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.calibration.about import about_cross_validation
-from ulna.calibration.coverage import Coverage, Judged, judged
+from ulna.calibration.coverage import Coverage, Judged
 from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.held_out import judged
 from ulna.calibration.likely import Cause, likely_causes, together
 from ulna.calibration.placements import FigureEntry, Figures
 from ulna.calibration.provenance import provenance

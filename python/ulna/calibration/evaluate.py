@@ -16,8 +16,9 @@ import polars as pl
 from ulna.arm.arm import Arm
 from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.calibration.about import about_evaluation
-from ulna.calibration.coverage import Coverage, judged
+from ulna.calibration.coverage import Coverage
 from ulna.calibration.figures import figures
+from ulna.calibration.held_out import judged
 from ulna.calibration.likely import likely_causes
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance

@@ -34,7 +34,7 @@ def likely_causes(arm: Arm, noise: ReadingNoise, study: Study, elsewhere: bool) 
         "blocks": all(effect.of_first for effect in arm.effects),
         "held": bool(held),
         "artefact-u": not all(stated),
-        "few-places": noise.parameter_freedom < FEW,
+        "few-places": noise.degrees_of_freedom < FEW,
     }
     return [cause for cause in CAUSES if found[cause]]
 

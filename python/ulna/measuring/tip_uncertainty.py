@@ -15,7 +15,8 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import NOTHING, Conditions, some_of
-from ulna.arm.directions import steps, worth_naming
+from ulna.arm.directions import worth_naming
+from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import UNKNOWN, ReadingNoise
 from ulna.ground.arrays import F64
 from ulna.work.cores import available_cores
@@ -43,13 +44,9 @@ class TipUncertainty:
         self._own_mm2, self._moves_mm = noise.variance_mm2, noise.moves_mm
         self._unknown = arm.uncertainty.why_none
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
-        index = {name: k for k, name in enumerate(arm.parameter_names)}
-        self._lost_columns = np.array(sorted({index[n] for d in self._lost for n in d["combination"]}), dtype=np.int64)
-        self._directions = np.zeros((len(self._lost), len(self._lost_columns)))
-        for row, direction in enumerate(self._lost):
-            for name, weight in direction["combination"].items():
-                self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
-            self._directions[row] /= max(steps(direction["combination"]).values())
+        directions = lost_steps(arm)
+        self._lost_columns = np.flatnonzero(directions.any(axis=0))
+        self._directions = np.ascontiguousarray(directions[:, self._lost_columns])
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 

@@ -14,7 +14,6 @@ use crate::monitor::Monitor;
 use crate::problem::Problem;
 use crate::problem::pins::Pin;
 use crate::problem::priors::Prior;
-use crate::simd::{Columns, padded};
 use crate::solver::decomposition::Decomposition;
 use crate::solver::triangle::Triangle;
 use crate::solver::{BLOCK_ROWS, RowBlock, RowSink};
@@ -225,7 +224,7 @@ fn with_considered(considered: &[(usize, f64)], free: usize, judged: &Judged, un
     let rows: Vec<Vec<f64>> = of_readings.chain(of_priors).collect();
     let mut triangle = Triangle::new(unknowns);
     for rows in rows.chunks(BLOCK_ROWS) {
-        triangle.fold(&mut block_of(rows, unknowns));
+        triangle.fold(&mut RowBlock::of_rows(rows, unknowns));
     }
     // what vanished without them has been judged: every other column is there
     let norms = triangle.column_norms();
@@ -237,19 +236,4 @@ fn with_considered(considered: &[(usize, f64)], free: usize, judged: &Judged, un
     let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
     let decomposition = Decomposition::new(&triangle, unknowns, &natural_scale, &slices);
     (triangle, decomposition)
-}
-
-/// Rows of so many unknowns and a residual.
-fn block_of(rows: &[Vec<f64>], unknowns: usize) -> RowBlock {
-    let mut block = RowBlock {
-        columns: Columns::zeros(unknowns + 1, rows.len()),
-        rows: padded(rows.len()),
-        targets: (0..unknowns).map(|c| (c, c)).collect(),
-        residual: unknowns,
-        standing: vec![],
-    };
-    for (k, row) in rows.iter().enumerate() {
-        row.iter().enumerate().for_each(|(column, &value)| block.columns.column_mut(column)[k] = value);
-    }
-    block
 }

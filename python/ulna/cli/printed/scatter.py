@@ -45,7 +45,7 @@ def _of_readings(found: ReadingScatter, loss: str) -> str:
 def _of_places(found: ReadingScatter) -> str:
     if found.places is None:
         return ""
-    few = found.parameter_degrees_of_freedom == found.places
+    few = found.few_places
     if found.place_factor is not None and found.place_factor > 1.0:
         text = (
             f"In a place that is left out the arm errs more than that: the parameters' u is {found.place_factor:.2g} "

@@ -57,7 +57,7 @@ class StatedParameters:
 def stated_parameters(result: Result, p: float = P) -> StatedParameters:
     """What can be stated of a result's parameters with coverage probability p."""
     fitted = [row for row in result.parameters if row.status == "fitted" and row.u is not None]
-    freedom = result.noise.parameter_freedom
+    freedom = result.noise.degrees_of_freedom
     at = [result.covariance.names.index(row.name) for row in fitted]
     return StatedParameters(
         fitted=fitted,

@@ -7,8 +7,9 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from ulna.calibration.coverage import Coverage, judged
+from ulna.calibration.coverage import Coverage
 from ulna.calibration.evaluate import study_of_arm
+from ulna.calibration.held_out import judged
 from ulna.calibration.likely import likely_causes
 from ulna.calibration.result import Result
 from ulna.documents.content.held_out import kept_to_check

@@ -80,7 +80,7 @@ def parameters(result: Result) -> Parameters:
     k is of Student's distribution where residuals had a say in u, with their degrees of freedom, and normal where the
     noise was stated and they do not contradict it (GUM G.3.2, G.6.4).
     """
-    freedom, unknown = result.noise.parameter_freedom, result.covariance.why_none
+    freedom, unknown = result.noise.degrees_of_freedom, result.covariance.why_none
     k = coverage_factor(COVERAGE, freedom) if unknown is None else math.nan
     lost: dict[str, dict[str, Any]] = {}
     for direction in result.identifiability.lost:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ulna.documents.dcc.quantities import quantity, real, real_list
 from ulna.documents.dcc.sheet import Element, Sheet
 from ulna.documents.sections.risk import process
@@ -16,11 +18,16 @@ def risks(sheet: Sheet, data: Element, risk: RiskTable) -> None:
         "dcc.consumer-at-most": risk.consumer_at_most,
         "dcc.producer-at-most": risk.producer_at_most,
     }
-    for key, value in specific.items():
-        if value is not None:
-            real(sheet, quantity(sheet, data, sheet.own(key)), value, "1")
+    _probabilities(sheet, data, specific)
     if risk.of_all is not None:
         _of_all(sheet, data, risk.of_all)
+
+
+def _probabilities(sheet: Sheet, data: Element, values: Mapping[str, float | None]) -> None:
+    """By the keys of their names; those that there are."""
+    for key, value in values.items():
+        if value is not None:
+            real(sheet, quantity(sheet, data, sheet.own(key)), value, "1")
 
 
 def _of_all(sheet: Sheet, data: Element, of_all: GlobalRiskTable) -> None:
@@ -30,8 +37,7 @@ def _of_all(sheet: Sheet, data: Element, of_all: GlobalRiskTable) -> None:
         "dcc.global-withheld": of_all.withheld,
         "dcc.global-undecided": of_all.undecided,
     }
-    for key, value in shares.items():
-        real(sheet, quantity(sheet, data, sheet.own(key)), value, "1")
+    _probabilities(sheet, data, shares)
     made = of_all.process
     said = sheet.spoken(lambda words, _: process(made, words))
     one = quantity(sheet, data, sheet.own("dcc.process"), description=said)

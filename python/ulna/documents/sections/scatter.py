@@ -8,9 +8,6 @@ from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import own
 from ulna.ground.digits import degrees_of_freedom, uncertainty
 
-#: places that are so few that k says it
-FEW = 3
-
 
 def scatter(content: Content, words: Words) -> list[Text]:
     """A sentence each; none where readings scatter as was stated, and alike in all places."""
@@ -28,7 +25,7 @@ def scatter(content: Content, words: Words) -> list[Text]:
         said.append(words("scatter.unexplained", unexplained=own(uncertainty(found.unexplained_mm))))
     if found.places is not None and (found.place_factor or 1.0) > 1.0:
         said.append(words("scatter.places", factor=own(f"{found.place_factor:.2g}"), places=found.places))
-    if found.places is not None and found.places <= FEW:
+    if found.few_places and found.places is not None:
         said.append(words("scatter.few-places", places=found.places))
     return said
 
