@@ -31,6 +31,11 @@ WHOLE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
+WITHOUT_NOISE = (
+    "How its readings scatter is not in the uncertainties: nothing is known of it. An arm alone does not bring it: "
+    "give the result of its calibration, or state encoder_u_rad."
+)
+
 
 class TipUncertainty:
     """Standard uncertainties of tip coordinates of a calibrated arm; collects notes on what it cannot say."""
@@ -41,7 +46,7 @@ class TipUncertainty:
         self._core = arm.core
         self._probe_names = list(arm.probes)
         self._covariances = [_covariance(arm, name, noise.encoder_rad) for name in arm.probes]
-        self._own_mm2, self._moves_mm = noise.variance_mm2, noise.moves_mm
+        self._own_mm2, self._moves_mm, self._noise_known = noise.variance_mm2, noise.moves_mm, noise.known
         self._unknown = arm.uncertainty.why_none
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
         directions = lost_steps(arm)
@@ -96,7 +101,8 @@ class TipUncertainty:
         """What was left empty, why, and what to do about it."""
         if self._unknown is not None:
             return [f"u_x, u_y, u_z are left empty: {self._unknown.because}. {self._unknown.remedy}"]
-        return [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
+        lost = [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
+        return lost if self._noise_known else [WITHOUT_NOISE, *lost]
 
 
 def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:
