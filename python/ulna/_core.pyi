@@ -197,6 +197,8 @@ class Problem:
         # an unknown of the fit: within its uncertainty, freely where that is 0
         inside: bool = False,  # whether a hollow is touched
         balls_mm: F64 | None = None,  # (P,) diameter of each probe's ball
+        rotation_rad: F64 | None = None,  # (N, 3) rotation vectors of a target, in the frame of who saw it
+        rotation_u_rad: F64 | None = None,  # (N,) standard uncertainty of that about each axis
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
         p_approach: F64 | None = None,  # of the second poses
@@ -214,7 +216,7 @@ class Problem:
         """The arm's, then the fitted dimensions of artefacts, such as `artefact.ball.diameter`."""
     @property
     def parameter_units(self) -> list[str]:
-        """Those of the arm, or "mm" or "1" of a dimension."""
+        """Those of the arm, or "mm", "rad" or "1" of a dimension."""
     @property
     def parameters(self) -> F64: ...
     def with_arm(self, arm: Arm) -> Problem: ...

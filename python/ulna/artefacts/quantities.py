@@ -112,6 +112,13 @@ QUANTITIES = (
         "distance error",
         "dist.",
     ),
+    Quantity(
+        "orientation_error",
+        ("mean", "rms", "max"),
+        "Angle between the orientations that the arm and the instrument say, times the lever (of 1 m: mrad as mm).",
+        "orientation error",
+        "orient.",
+    ),
 )
 """In the order in which they are shown."""
 

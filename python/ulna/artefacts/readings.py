@@ -59,6 +59,10 @@ class Readings(Shown):
     """(N, n) +1 where the encoder's angle had been rising, -1 where it had been falling, 0 where nobody knows."""
     p_approach: F64 | None = None
     """(N, n) the same of the second pose; length rows only."""
+    rotation_rad: F64 | None = None
+    """(N, 3) rotation vectors, from a target's frame to that of the instrument that saw it; orientations only."""
+    rotation_u_rad: F64 | None = None
+    """(N,) their standard uncertainty about each axis, where it is stated."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, Labels.of(value) if name == "placement" else value)
@@ -112,6 +116,8 @@ class Readings(Shown):
             temperature_c=of(self.temperature_c),
             approach=of(self.approach),
             p_approach=of(self.p_approach),
+            rotation_rad=of(self.rotation_rad),
+            rotation_u_rad=of(self.rotation_u_rad),
         )
 
     @property

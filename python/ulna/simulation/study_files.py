@@ -88,6 +88,8 @@ def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> 
     measured = kind_of(group.artefact).measured_column
     if measured is not None and group.artefact.length_mm is None and group.length_mm is not None:
         columns[measured] = group.length_mm
+    if group.rotation_rad is not None:
+        columns |= {name: group.rotation_rad[:, k] for k, name in enumerate(("rx", "ry", "rz"))}
     for condition, name, said in group.conditions():
         numbers = said if condition.allowed is None else said.astype(np.int64)
         if said.ndim == 1:

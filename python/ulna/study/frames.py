@@ -83,7 +83,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     table = frame_table(frame, FRAME, layout, WHAT)
     table, columns = _with_own_units(table, arm, dict(layout.columns))
     entry |= {"columns": columns} if columns else {}
-    header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True))
+    header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True, True))
     _check_angles(header, arm)
     entry["angle"] = entry.get("angle") or asked.angle or _angle(header, arm)
     length_unit = _length_unit(header, asked.length_unit)
@@ -108,7 +108,7 @@ def _units(length_unit: str | None) -> Units:
 def _with_own_units(table: FrameTable, arm: Arm, columns: dict[str, str]) -> tuple[FrameTable, dict[str, str]]:
     """Columns whose names end in a unit, `q1_deg` or `x_mm`, under Ulna's names, and the table that knows the units."""
     units: dict[str, str] = {}
-    known = known_columns(arm.n, True)
+    known = known_columns(arm.n, True, True)
     for name in table.columns:
         match = re.fullmatch(r"(.+)_(rad|deg|counts|mm|m|in)", name)
         if match is None:

@@ -1,6 +1,6 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
-use crate::arm::{Arm, JointModel, Lost, Seen};
+use crate::arm::{Arm, JointModel, Lost, Seen, Unit};
 use crate::kinematics::{Sample, jacobian, tip_mm};
 use crate::problem::Problem;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -77,13 +77,16 @@ pub(crate) struct Scene<'a> {
     natural_scale: Vec<f64>,
     /// parameters that only move the base frame
     base: Vec<usize>,
+    /// whether any reading tells where the tip is
+    tells_places: bool,
 }
 
 impl<'a> Scene<'a> {
     pub fn new(problem: &Problem, arm: &'a Arm, free: &'a [usize], poses: &'a [Sample]) -> Scene<'a> {
         let (probes_used, seen) = (problem.probes_used(), problem.seen());
         let (natural_scale, base) = (problem.natural_scale(), problem.base_parameters());
-        Scene { arm, free, poses, probes_used, seen, natural_scale, base }
+        let tells_places = problem.tells_places();
+        Scene { arm, free, poses, probes_used, seen, natural_scale, base, tells_places }
     }
 
     /// Whether every tip that was read with lies on the last axis.
@@ -127,6 +130,10 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
     // a base that grows with the temperature moves by next to nothing more in the warm than in the cold
     if takes_part.iter().all(|j| scene.base.contains(j)) {
         return base_frame();
+    }
+    let units = arm.parameter_units();
+    if !scene.tells_places && takes_part.iter().all(|&j| units.get(j) == Some(&Unit::Mm)) {
+        return no_places();
     }
     if let Some(because) = of_effects(&takes_part, scene) {
         return because;
@@ -199,6 +206,15 @@ pub(crate) fn scale() -> Because {
         cause: Cause::Scale,
         because: "it only scales the arm: no length is known in these readings".into(),
         remedy: "add readings of a bar of known length, or hold one known length of the arm".into(),
+    }
+}
+
+/// What is said of lengths where only orientations were read.
+fn no_places() -> Because {
+    Because {
+        cause: Cause::Scale,
+        because: "only orientations were read: they tell no length of the arm".into(),
+        remedy: "add readings of places: points of the same tracker, a bar, a seat; or hold the lengths".into(),
     }
 }
 

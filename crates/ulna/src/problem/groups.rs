@@ -195,6 +195,11 @@ impl Problem {
         self.groups.iter().all(|g| g.scale_free())
     }
 
+    /// Whether any reading tells where the tip is.
+    pub fn tells_places(&self) -> bool {
+        self.groups.iter().any(|g| g.tell_places())
+    }
+
     /// Whether an arm whose tip never moves explains the readings as well.
     pub fn still_free(&self) -> bool {
         self.groups.iter().all(|g| g.still_free())

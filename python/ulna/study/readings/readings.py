@@ -36,6 +36,7 @@ from ulna.study.readings.columns import (
 )
 from ulna.study.readings.conditions import approach_by_order, said_of
 from ulna.study.readings.own_points import has_own_points, own_points
+from ulna.study.readings.turned import said_of_target
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 
@@ -75,7 +76,8 @@ def _table(
     place = f"{source.study}: key '{source.key}"
     layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
     coordinates = any(map(has_own_points, artefacts.values()))
-    known = known_columns(arm.n, coordinates)
+    turned = any(kind_of(artefact).turned for artefact in artefacts.values())
+    known = known_columns(arm.n, coordinates, turned)
     header = (
         read_header(path, WHAT, layout, known) if source.table is None else named_header(source.table, layout, known)
     )
@@ -84,7 +86,7 @@ def _table(
     selection = Selection(entry.where or {}, entry.split, which, place)
     asked = list(dict.fromkeys(selection.columns(header).values()))
     ignored = ignored_columns(header, entry.ignore or (), f"{place}.ignore'")
-    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, [*asked, *ignored])
+    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, [*asked, *ignored], turned)
     needed = [column for column in needed if column not in ignored]
     if asked:
         texts = header.cells(lambda _: False, asked)
@@ -143,6 +145,8 @@ def _part(
     if kind.measured_column is not None:
         length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
     said: dict[str, Any] = {**said_of(frame, arm.n, header, row)}
+    if kind.turned:
+        said |= said_of_target(frame, row, artefact, header, source)
     return Readings(
         artefact=artefact,
         q_rad=q_rad,
