@@ -31,6 +31,7 @@ from ulna.ground.errors import UlnaInputError
 
 AXES = ("rx", "ry", "rz")
 LEVER_MM = 1000.0
+"""At which an angle is told as a length: mrad as mm."""
 WAYS = ("vector", "quaternion", *SEQUENCES)
 """How rotations may be written."""
 
@@ -49,7 +50,13 @@ class Target:
     """Rotation vector from the target's frame to the probe's; None: to be found."""
     u_mount_rad: float
     fit_mount: bool
-    lever_mm: float
+    lever_mm: float | None = None
+    """None: nobody says it."""
+
+    @property
+    def weighs_mm(self) -> float:
+        """The lever, or what is taken where nobody says it."""
+        return self.lever_mm or LEVER_MM
 
     @property
     def dimensions(self) -> list[Dimension]:
@@ -85,8 +92,8 @@ class OrientationTable(StatedTable):
     fit_mount: bool = False
     """Whether a mount that is given is fitted: within its uncertainty, or freely where none is stated."""
     lever: Positive | None = None
-    """How far from the tip an error of orientation counts as a length (1 m): 1 mrad as 1 mm. Where no noise is stated
-    it weighs orientations against places."""
+    """How far from the tip an error of orientation counts as one of a place; with 1 m, 1 mrad counts as 1 mm. It weighs
+    orientations where no noise is stated; not given, both weigh so that they scatter alike."""
 
     def made(self, name: str, place: Place) -> Artefact:
         """Without features: nobody touches it. Raises UlnaInputError for a mount that is uncertain and not there."""
@@ -103,7 +110,7 @@ class OrientationTable(StatedTable):
                 f"{place.path}: key 'artefact.{name}.mount': got {self.mount}, more than a whole turn; expected a "
                 f"rotation vector in {self.angle or place.units.angle}. State its unit with the key 'angle'."
             )
-        lever_mm = LEVER_MM if self.lever is None else self.lever * place.units.mm
+        lever_mm = None if self.lever is None else self.lever * place.units.mm
         u_rad, u_mount_rad = self.u * rad, self.u_mount * rad
         own = Target(self.rotation, rad, u_rad, mount_rad, u_mount_rad, self.fit_mount, lever_mm)
         return Artefact(name, "orientation", {}, None, 0.0, self.frame, own=own)
@@ -170,12 +177,12 @@ class Orientation(Kind):
             rotation_rad=group.rotation_rad,
             rotation_u_rad=group.rotation_u_rad,
             dimensions=[(each.name, each.value, each.u, each.fitted) for each in stated]
-            + [("lever", own.lever_mm, 0.0, False)],
+            + [("lever", own.weighs_mm, 0.0, False)],
         )
 
     def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:
-        """Angles to the orientations measured, times the lever; with the frames, and the mount where it is fitted, that
-        fit best here."""
+        """Angles to the orientations measured, in mm at 1 m (mrad); with the frames, and the mount where it is fitted,
+        that fit best here."""
         own = target(readings.artefact)
         assert tips.turned is not None
         free = readings.artefact.frame == "free"
@@ -183,7 +190,7 @@ class Orientation(Kind):
         mount = None if known is None else matrices_of_vectors(np.array([known]))[0]
         seen = _seen(readings)
         off_rad = mounting(tips.turned, seen, tips.code, free, mount).off_rad(tips.turned, seen, tips.code)
-        return {"orientation_error": Errors(own.lever_mm * np.linalg.norm(off_rad, axis=1), tips.code)}
+        return {"orientation_error": Errors(LEVER_MM * np.linalg.norm(off_rad, axis=1), tips.code)}
 
     def drawn(self, stated: Artefact, rng: np.random.Generator) -> Artefact:
         """The target as it is really mounted: anyhow, where nothing is stated."""
@@ -236,7 +243,7 @@ class Orientation(Kind):
         keys |= {"mount": list(own.mount_rad)} if own.mount_rad is not None else {}
         keys |= {"u_mount": own.u_mount_rad} if own.u_mount_rad else {}
         keys |= {"fit_mount": True} if own.fit_mount else {}
-        return keys | ({"lever": own.lever_mm} if own.lever_mm != LEVER_MM else {})
+        return keys | ({"lever": own.lever_mm} if own.lever_mm is not None else {})
 
 
 def _seen(group: Readings) -> F64:

@@ -115,7 +115,7 @@ QUANTITIES = (
     Quantity(
         "orientation_error",
         ("mean", "rms", "max"),
-        "Angle between the orientations that the arm and the instrument say, times the lever (of 1 m: mrad as mm).",
+        "Angle between the orientations that the arm and the instrument say, in mm at 1 m: mrad.",
         "orientation error",
         "orient.",
     ),

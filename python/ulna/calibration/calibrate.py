@@ -9,6 +9,7 @@ from typing import Any
 from ulna.calibration.estimators import search_box
 from ulna.calibration.extras import judge_extras
 from ulna.calibration.fitted import FittedStudy
+from ulna.calibration.levers import with_levers
 from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import Progress
@@ -29,6 +30,7 @@ def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: A
     """
     study = with_options(as_study(study), **overrides)
     began = time.perf_counter()
+    study = with_levers(study, progress)
     assembled = assemble(study)
     searched = search_box(study, assembled, progress) if study.fit.method != "lm" else None
     fitted = run_assembled(study, assembled, progress, None if searched is None else searched.parameters)

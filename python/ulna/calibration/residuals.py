@@ -42,7 +42,7 @@ class ResidualEntry(ReadingEntry):
     turn_x_mm: float | None = None
     turn_y_mm: float | None = None
     turn_z_mm: float | None = None
-    """Of an orientation: the turn about an axis of the base frame, times the lever (of 1 m: mrad as mm)."""
+    """Of an orientation: the turn about an axis of the base frame, times the lever by which it weighs."""
     norm_mm: float
     """The magnitude."""
     weight: float

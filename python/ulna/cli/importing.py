@@ -73,6 +73,9 @@ def ipa_ur10(
     standings: Annotated[
         int, typer.Option(min=1, help="Take the tracker's place as new in each of so many parts of the file.")
     ] = 1,
+    orientations: Annotated[
+        bool, typer.Option("--orientations", help="Read how the target was turned as well as where it was.")
+    ] = False,
     parquet: AsParquet = False,
     force: Force = False,
 ) -> None:
@@ -82,7 +85,7 @@ def ipa_ur10(
     """
     from ulna.exchange.importers.ipa import import_ipa_ur10
 
-    fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, force)
+    fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, orientations, force)
     _say(f"{out}: {fitted} readings to fit (study.toml), {held_out} held out{' (held-out.toml)' * bool(held_out)}.")
     _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
 
