@@ -12,6 +12,7 @@
 
 mod attitudes;
 mod directions;
+mod observed;
 mod scene;
 mod stated;
 mod turned;
