@@ -36,3 +36,9 @@ def wrong_type(given: object, expected: str) -> TypeError:
     article = "an" if kind[:1].lower() in "aeiou" or kind == "ndarray" else "a"
     shown = "None" if given is None else f"{article} {kind}"
     return TypeError(f"got {shown}, expected {expected}.")
+
+
+def cannot_be_read(error: OSError) -> str:
+    """A disk that is full, a network folder that went away, permissions: what nobody can foresee, as a message."""
+    where = f"{error.filename}: " if error.filename else ""
+    return f"{where}cannot be read or written ({error.strerror or error}). Check the disk and the permissions."
