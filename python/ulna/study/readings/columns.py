@@ -22,7 +22,7 @@ from ulna.formats.tables.heads import is_number
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.readings.conditions import check_conditions, condition_columns, is_condition
+from ulna.study.readings.conditions import check_conditions, condition_columns, is_number_condition
 
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
@@ -35,7 +35,7 @@ MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if
 
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return column in MEASURED or is_condition(column) or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
+    return column in MEASURED or is_number_condition(column) or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
 
 
 def is_length(column: str) -> bool:
@@ -116,7 +116,7 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
 
 
 class ReadingsEntry(TableKeys):
-    """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
+    """One readings file. artefact, probe, placement, feature and payload fill the column where the file has none."""
 
     file: str
     """Path, relative to the study file."""
@@ -126,6 +126,8 @@ class ReadingsEntry(TableKeys):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    payload: str | None = None
+    """What was carried: the name of a [payload] of the study or of the arm file, or "none"."""
     approach: Literal["column", "order"] | None = None
     """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
     be said), or the order of the rows: the sign of each encoder's last change."""
@@ -148,6 +150,8 @@ class Source:
     index: int
     """Into `Study.files`."""
     arm_file: Path
+    carried: str | None = None
+    """What was carried where neither the file nor its table says it: the study's key `carried`."""
     table: FrameTable | None = None
     """The readings, their columns under their own names, where they are no file."""
 
@@ -176,7 +180,7 @@ def codes(
     frame: pl.DataFrame,
     header: Header,
     source: Source,
-    column: Literal["artefact", "probe", "feature"],
+    column: Literal["artefact", "probe", "feature", "payload"],
     known: list[str],
     owner: str,
     row: I64,

@@ -68,6 +68,7 @@ def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
         temperature_c=_said(own, "temperature_c"),
         approach=_said(own, "approach"),
         p_approach=_said(own, "p_approach"),
+        payload=_said(own, "payload"),
     )
 
 
