@@ -73,14 +73,41 @@ class Arm:
         """Sum of the lengths of all links and the tip: nothing is farther from the base."""
     # warmth_k, everywhere: (N,) or (N, n) temperature above 20 °C of the links; None: 20 °C
     # approach, everywhere: (N, n) +1 where the encoder's angle had been rising, -1 falling, 0 or None: nobody knows
-    def tip(self, q_rad: F64, probe: int | I64 = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    # payload, everywhere: (N, 4) what was carried: kg, and x, y, z of its centre, mm, probe's frame; None: nothing
+    def tip(
+        self,
+        q_rad: F64,
+        probe: int | I64 = 0,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        payload: F64 | None = None,
+    ) -> F64:
         """(N, n) encoder angles → (N, 3) tip positions in the base frame; probe one index or one per row."""
-    def tip_plain(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    def tip_plain(
+        self,
+        q_rad: F64,
+        probe: int = 0,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        payload: F64 | None = None,
+    ) -> F64:
         """The same by frames, one pose at a time: the formula as written, for comparison."""
-    def jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    def jacobian(
+        self,
+        q_rad: F64,
+        probe: int = 0,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        payload: F64 | None = None,
+    ) -> F64:
         """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm for a unit of each."""
     def encoder_jacobian(
-        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
+        self,
+        q_rad: F64,
+        probe: int = 0,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        payload: F64 | None = None,
     ) -> F64:
         """(N, n) → (N, 3, n): ∂p/∂q_i, mm/rad."""
     def tip_covariance(
@@ -91,6 +118,7 @@ class Arm:
         covariance: F64,
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
+        payload: F64 | None = None,
     ) -> F64:
         """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
     def direction_effect(
@@ -101,6 +129,7 @@ class Arm:
         directions: F64,
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
+        payload: F64 | None = None,
     ) -> F64:
         """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters."""
     def pose_for_points(
@@ -112,11 +141,17 @@ class Arm:
         tries: int = 40,
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
+        payload: F64 | None = None,
     ) -> tuple[F64, Bool]:
         """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a
         random elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
     def check_jacobian(
-        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
+        self,
+        q_rad: F64,
+        probe: int = 0,
+        warmth_k: F64 | None = None,
+        approach: F64 | None = None,
+        payload: F64 | None = None,
     ) -> float:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
@@ -202,6 +237,7 @@ class Problem:
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
         p_approach: F64 | None = None,  # of the second poses
+        payload: F64 | None = None,
     ) -> int:
         """Readings of one artefact; returns the group's number. Raises UlnaError for a kind that there is not, and for
         what a kind needs and lacks or has no use for, by name."""

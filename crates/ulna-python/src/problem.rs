@@ -33,7 +33,8 @@ impl Problem {
     #[pyo3(signature = (kind, artefact, *, q_rad, probe, placement=None, feature=None, p_rad=None, measured_mm=None,
                         features_mm=None, labels=None, feature_u_mm=None, features_fitted=false, frame=None,
                         dimensions=vec![], inside=false, balls_mm=None, rotation_rad=None, rotation_u_rad=None,
-                        warmth_k=None, approach=None, p_approach=None))]
+                        warmth_k=None, approach=None, p_approach=None,
+                        payload=None))]
     #[allow(clippy::too_many_arguments)]
     fn add(
         &mut self,
@@ -58,6 +59,7 @@ impl Problem {
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
         approach: Option<PyReadonlyArrayDyn<'_, f64>>,
         p_approach: Option<PyReadonlyArrayDyn<'_, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let n = self.inner.arm().encoders();
         let q_rad = rows(&q_rad, n, "the poses")?;
@@ -84,9 +86,9 @@ impl Problem {
             inside,
             balls_mm: balls_mm.as_deref(),
         };
-        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), q_rad.len() / n, n)?;
+        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), payload.as_ref(), q_rad.len() / n, n)?;
         let second = p_rad.as_ref().map(|p_rad| {
-            let told = Told::new(warmth_k.as_ref(), p_approach.as_ref(), p_rad.len() / n, n)?;
+            let told = Told::new(warmth_k.as_ref(), p_approach.as_ref(), payload.as_ref(), p_rad.len() / n, n)?;
             PyResult::Ok((p_rad, told))
         });
         let second = second.transpose()?;

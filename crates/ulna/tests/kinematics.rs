@@ -18,7 +18,10 @@ fn any(seed: u64, encoders: usize, rows: usize) -> (Arm, Vec<f64>, Told) {
     let arm = if rng.random() { arm.with_effects(any_effects(&mut rng, encoders)).unwrap() } else { arm };
     let q = angles(&mut rng, encoders * rows);
     let (warmths, approaches) = ([0, 1, encoders][rng.random_range(0..3)], [0, encoders][rng.random_range(0..2)]);
-    let told = Told::any(&mut rng, rows, warmths, approaches);
+    let mut told = Told::any(&mut rng, rows, warmths, approaches);
+    if rng.random() {
+        told.payload.clear();
+    }
     (arm, q, told)
 }
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,6 +20,7 @@ from numpy.typing import ArrayLike
 from ulna.arm.arm import Arm
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
+from ulna.arm.payload import Payload
 from ulna.artefacts.readings import InputFile
 from ulna.artefacts.tables import Place
 from ulna.formats.header import Header
@@ -33,7 +35,7 @@ from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.ground.provided import provided
 from ulna.study.data import FitOptions, Noise, StudyData, Taken
 from ulna.study.options import with_options
-from ulna.study.parameters import check_patterns
+from ulna.study.parameters import check_patterns, remark_vain_payloads
 from ulna.study.readings.columns import ReadingsEntry, Source, is_length, known_columns
 from ulna.study.readings.gathered import gathered
 from ulna.study.readings.readings import WHAT, read_readings
@@ -59,12 +61,15 @@ class Asked:
     """Of a table [[readings]], as a study file would say them; without those that nobody gave."""
     encoder_u_rad: ArrayLike | None = None
     seat_u_mm: float | None = None
+    payloads: Mapping[str, Payload] = field(default_factory=dict)
+    """What the arm carried beside its own masses, by name."""
     fit: dict[str, Any] = field(default_factory=dict)
 
 
 def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, make: type[AnyStudy]) -> AnyStudy:
     """As `Study.from_frame` says."""
     arm = as_arm(given)
+    arm = replace(arm, payloads={**arm.payloads, **asked.payloads})
     remarks: list[str] = []
     files: list[InputFile] = []
     if isinstance(given, str | os.PathLike):
@@ -87,7 +92,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     _check_angles(header, arm)
     entry["angle"] = entry.get("angle") or asked.angle or _angle(header, arm)
     length_unit = _length_unit(header, asked.length_unit)
-    source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, table)
+    source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, None, table)
     parts, used = read_readings(source, arm, found, _units(length_unit), remarks, asked.rows)
     files.append(used)
     groups = gathered(parts, LABEL, arm, found, files, remarks, asked.rows)
@@ -95,6 +100,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     split = None if "split" not in entry else asked.rows
     study = make(None, arm, groups, noise, FitOptions(), files, remarks, split, taken)
     study = with_options(study, **asked.fit)
+    remark_vain_payloads(study)
     check_patterns(study)
     for remark in remarks:
         warnings.warn(remark, InputWarning, stacklevel=3)

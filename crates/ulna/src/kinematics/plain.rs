@@ -1,7 +1,7 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
 use super::pose::Pose;
-use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
+use crate::arm::effects::{Base, BaseOffset, BaseTilt, Body, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -59,7 +59,7 @@ impl<'a> Posed<'a> {
         let theta0 = |i: usize| arm.joints().get(i).map_or(0.0, |joint| joint.theta0_rad);
         let signs: Vec<f64> = arm.signs().collect();
         let rigid: Vec<f64> = (0..n).map(|i| signs[i] * pose.q_rad[i] - theta0(i)).collect();
-        let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, &rigid));
+        let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, pose, &rigid));
         let turn = |i: usize| {
             let added = signs[i] * effects.added_rad(i, pose.encoder(i));
             let given = weight.as_ref().map_or(0.0, |w| w.rad_per_nm(i) * w.moment_nm(i));
@@ -197,7 +197,7 @@ struct Weight<'a> {
 }
 
 impl<'a> Weight<'a> {
-    fn new(arm: &'a Arm, turns_rad: &[f64]) -> Weight<'a> {
+    fn new(arm: &'a Arm, pose: Pose, turns_rad: &[f64]) -> Weight<'a> {
         let n = arm.encoders();
         // gravity is told in the frame of the first axis
         let frames = chained(arm, Isometry3::identity(), turns_rad, &vec![1.0; n]);
@@ -212,10 +212,15 @@ impl<'a> Weight<'a> {
         if let Some(compliance) = &arm.effects().compliance {
             weight.pull = compliance.pull().into();
             weight.rad_per_nm = &compliance.rad_per_nm;
-            let mut sum = (Vector3::zeros(), 0.0);
-            for (i, body) in compliance.bodies.iter().enumerate().rev() {
+            let hung = |i: usize, body: &Body| {
                 let centre = weight.frames[i + 1] * Point3::from(body.centre_mm);
-                sum = (sum.0 + centre.coords * body.mass_kg, sum.1 + body.mass_kg);
+                (centre.coords * body.mass_kg, body.mass_kg)
+            };
+            // what is carried hangs on the last joint, as the probe does
+            let mut sum = hung(n - 1, &pose.payload());
+            for (i, body) in compliance.bodies.iter().enumerate().rev() {
+                let (moment, mass) = hung(i, body);
+                sum = (sum.0 + moment, sum.1 + mass);
                 weight.outboard[i] = sum;
             }
         }

@@ -1,7 +1,7 @@
 //! Encoder angles of many poses, in columns, and what was true at them.
 
 use super::chain::Link;
-use super::conditions::{Conditions, Held};
+use super::conditions::{Conditions, Held, PAYLOAD};
 use super::pose::{Pose, Sample};
 use crate::arm::effects::{EncoderLanes, Seen};
 use crate::simd::{Columns, Lanes};
@@ -84,8 +84,8 @@ impl Poses {
     /// One pose, taken with a probe.
     pub fn sample(&self, row: usize, probe: usize) -> Sample {
         let q_rad = (0..self.encoders()).map(|j| self.q_rad.column(j)[row]).collect();
-        let (warmth_k, approach) = self.conditions.row(row);
-        Sample { probe, q_rad, warmth_k, approach }
+        let [warmth_k, approach, payload] = self.conditions.row(row);
+        Sample { probe, q_rad, warmth_k, approach, payload }
     }
 
     /// What they show of what effects depend on.
@@ -97,6 +97,12 @@ impl Poses {
     #[inline(always)]
     pub(in crate::kinematics) fn warmth<S: Simd>(&self, simd: S, i: usize, k: usize) -> Lanes<S> {
         self.conditions.warmth(simd, i, k)
+    }
+
+    /// What vector `k` of poses carried beside the arm's own masses, if any of all poses carried any.
+    #[inline(always)]
+    pub(in crate::kinematics) fn payload<S: Simd>(&self, simd: S, k: usize) -> Option<[Lanes<S>; PAYLOAD]> {
+        self.conditions.payload(simd, k)
     }
 
     /// Sine and cosine of the encoder angle of joint `i` for vector `k` of poses.

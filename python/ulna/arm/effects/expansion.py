@@ -68,7 +68,9 @@ class Expansion(Effect):
         """One number."""
         return {} if own.expansion_per_k is None else {"expansion": own.expansion_per_k}
 
-    def for_core(self, joints: Sequence[ExpansionOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(
+        self, joints: Sequence[ExpansionOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
         """One number a joint."""
         return {"expansion_per_k": np.array([own.expansion_per_k or 0.0 for own in joints])}
 

@@ -22,7 +22,7 @@ from ulna.formats.tables.heads import is_number
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.readings.conditions import check_conditions, condition_columns, is_condition
+from ulna.study.readings.conditions import check_conditions, condition_columns, is_number_condition
 
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
@@ -40,7 +40,7 @@ def is_numeric(column: str) -> bool:
     return (
         column in MEASURED
         or column in ROTATIONS
-        or is_condition(column)
+        or is_number_condition(column)
         or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
     )
 
@@ -125,7 +125,7 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
 
 
 class ReadingsEntry(TableKeys):
-    """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
+    """One readings file. artefact, probe, placement, feature and payload fill the column where the file has none."""
 
     file: str
     """Path, relative to the study file."""
@@ -135,6 +135,8 @@ class ReadingsEntry(TableKeys):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    payload: str | None = None
+    """What was carried: the name of a [payload] of the study or of the arm file, or "none"."""
     approach: Literal["column", "order"] | None = None
     """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
     be said), or the order of the rows: the sign of each encoder's last change."""
@@ -157,6 +159,8 @@ class Source:
     index: int
     """Into `Study.files`."""
     arm_file: Path
+    carried: str | None = None
+    """What was carried where neither the file nor its table says it: the study's key `carried`."""
     table: FrameTable | None = None
     """The readings, their columns under their own names, where they are no file."""
 
@@ -185,7 +189,7 @@ def codes(
     frame: pl.DataFrame,
     header: Header,
     source: Source,
-    column: Literal["artefact", "probe", "feature"],
+    column: Literal["artefact", "probe", "feature", "payload"],
     known: list[str],
     owner: str,
     row: I64,

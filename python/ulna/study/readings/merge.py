@@ -70,6 +70,7 @@ def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
         p_approach=_said(own, "p_approach"),
         rotation_rad=of("rotation_rad"),
         rotation_u_rad=of("rotation_u_rad"),
+        payload=_said(own, "payload"),
     )
 
 

@@ -36,6 +36,7 @@ from ulna.study.readings.columns import (
 )
 from ulna.study.readings.conditions import approach_by_order, said_of
 from ulna.study.readings.own_points import has_own_points, own_points
+from ulna.study.readings.payloads import carried_in
 from ulna.study.readings.turned import said_of_target
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
@@ -144,7 +145,7 @@ def _part(
         check_scale(p_rad, "p", arm, factors, source.entry.angle or units.angle, header, row)
     if kind.measured_column is not None:
         length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
-    said: dict[str, Any] = {**said_of(frame, arm.n, header, row)}
+    said: dict[str, Any] = said_of(frame, arm.n, header, row) | carried_in(frame, header, source, arm, row, remarks)
     if kind.turned:
         said |= said_of_target(frame, row, artefact, header, source)
     return Readings(

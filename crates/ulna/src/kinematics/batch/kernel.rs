@@ -39,7 +39,7 @@ impl Layout {
         let tip = effects + n * EFFECT_SLOTS;
         let shapes = tip + 3;
         let compliance = shapes + chain.columns.on_encoders;
-        let base = compliance + if chain.carried.is_some() { n * compliance::SLOTS } else { 0 };
+        let base = compliance + if chain.carried.is_some() { n * compliance::SLOTS + compliance::MORE } else { 0 };
         let kept = base + if chain.base.is_some() { 3 } else { 0 };
         Layout { effects, tip, shapes, compliance, base, kept, end: kept + chain.turn_column() + 1 }
     }
