@@ -11,6 +11,7 @@ from ulna.arm.data import ArmData
 from ulna.arm.frames.modified import from_modified
 from ulna.arm.joint_file import joint_document, joint_of
 from ulna.arm.modified_file import check_modified
+from ulna.arm.parameters_file import check_parameters
 from ulna.arm.payload import payload_documents, payloads_of
 from ulna.arm.probe import Probe
 from ulna.arm.tables import ArmFile, CylindricalTip, ProbeTable
@@ -71,6 +72,7 @@ def arm_of_result(document: dict[str, Any], path: Path, make: type[AnyArm]) -> A
     whole = {"format": "ulna-arm/1", "units": {"length": "mm", "angle": "rad"}, **arm}
     found = _arm(fill(ArmFile, whole, path), path, make)
     known = covariance_of_result(document, found, path)
+    check_parameters(document, found, known, path)
     return dataclasses.replace(found, uncertainty=known.of(found.parameter_names))
 
 
