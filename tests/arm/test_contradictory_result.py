@@ -86,9 +86,9 @@ def test_it_is_refused_wherever_a_result_is_taken(change: Change, tmp_path: Path
     path = tmp_path / "result.json"
     path.write_text(json.dumps(document), encoding="utf-8")
     q_rad = np.zeros((1, 5))
-    assert ulna.measure(ulna.Result.load(path), q_rad).points_mm.shape == (1, 3)
+    assert ulna.measure(ulna.Result.load(path), q_rad, probe="bent").points_mm.shape == (1, 3)
     change(document)
     path.write_text(json.dumps(document), encoding="utf-8")
-    for take in (ulna.Result.load, ulna.Arm.load, lambda each: ulna.measure(each, q_rad)):
+    for take in (ulna.Result.load, ulna.Arm.load, lambda each: ulna.measure(each, q_rad, probe="bent")):
         with pytest.raises(ulna.UlnaInputError, match=r"key 'parameters.*The file was changed or damaged"):
             take(path)
