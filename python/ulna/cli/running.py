@@ -85,7 +85,9 @@ def _said(error: Exception, command: Command) -> str | None:
 
 
 def _fail(message: str) -> None:
-    print(f"error: {message}", file=sys.stderr)
+    from ulna.ground.errors import for_people
+
+    print(f"error: {for_people(message)}", file=sys.stderr)
     raise typer.Exit(BAD_INPUT) from None
 
 
@@ -97,4 +99,6 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    print(f"warning: {message}", file=sys.stderr)
+    from ulna.ground.errors import for_people
+
+    print(f"warning: {for_people(str(message))}", file=sys.stderr)
