@@ -95,7 +95,8 @@ class FitOptions:
     them (chi² per degree of freedom up to 3) and they are more than a thousandth of the reach."""
 
     def __post_init__(self) -> None:
-        if self.extras == AUTO:
+        given: list[str] | str = self.extras
+        if given == AUTO:
             object.__setattr__(self, "extras", [])
             object.__setattr__(self, "auto", True)
         elif self.extras:  # somebody has chosen

@@ -72,9 +72,9 @@ def _check_auto(study: StudyData) -> None:
         return
     if study.fit.method != "lm":
         raise UlnaInputError(
-            f"{study.label}: key 'fit.extras': 'auto' compares models by their derivatives, but key 'fit.method' asks for "
-            f"a search without, '{study.fit.method}'; expected method \"lm\" beside it. Remove one of the two, or name the "
-            "extras."
+            f"{study.label}: key 'fit.extras': 'auto' compares models by their derivatives, but key 'fit.method' asks "
+            f"for a search without, '{study.fit.method}'; expected method \"lm\" beside it. Remove one of the two, or "
+            "name the extras."
         )
 
 

@@ -1,8 +1,9 @@
 """Choose a model by readings left out.
 
-Every model of `ulna.calibration.choosing.models` is fitted without each group of readings in turn, and judged on it by the
-figure that a metrologist reads. Among those that err by no more than one standard error of the difference more than the best
-one, that with the fewest parameters is chosen (Breiman and others 1984): never one that errs more than geometry alone.
+Every model of `ulna.calibration.choosing.models` is fitted without each group of readings in turn, and judged on it by
+the figure that a metrologist reads. Among those that err by no more than one standard error of the difference more than
+the best one, that with the fewest parameters is chosen (Breiman and others 1984): never one that errs more than
+geometry alone.
 
 How long it may take is told in multiplications and not in seconds, so that the choice is the same on every machine.
 """
@@ -112,13 +113,13 @@ def chosen(errors: F64, parameters: Sequence[int]) -> tuple[int, int]:
     best = int(np.argmin(mean))
     worse = errors - errors[best]
     u = worse.std(axis=1, ddof=1) / np.sqrt(errors.shape[1])
-    good = np.flatnonzero((worse.mean(axis=1) <= u) & (mean <= mean[0]))
-    return best, int(min(good, key=lambda k: (parameters[k], mean[k])))
+    good = np.flatnonzero((worse.mean(axis=1) <= u) & (mean <= mean[0])).tolist()
+    return best, min(good, key=lambda k: (parameters[k], float(mean[k])))
 
 
 def _all(groups: Groups, rows: Rows, models: list[Model], progress: Progress | None) -> tuple[list[_Tried], int]:
     """Each model in turn, as far as the budget goes; and how many are left."""
-    spent, found = 0.0, []
+    spent, found = 0.0, list[_Tried]()
     held = [_rows_left_out(groups, group) for group in range(groups.count)]
     for number, model in enumerate(models):
         size = float(len(rows.which(model.blocks, model.order)))

@@ -2,8 +2,8 @@
 
 What a model does not explain is alike for readings near each other, so single readings left out at random flatter every
 model. A region is a part of the poses, halved again and again along the joint that varies most. Where a region is a
-part of a placement, that placement counts as one for each region: of readings left out nothing is known from the others,
-their placement neither.
+part of a placement, that placement counts as one for each region: of readings left out nothing is known from the
+others, their placement neither.
 """
 
 from __future__ import annotations

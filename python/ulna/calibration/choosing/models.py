@@ -1,9 +1,9 @@
 """The models that are tried: every block that a study allows, with and without, and a ladder of harmonics' orders.
 
 Amplitudes of harmonics are known beforehand to be small: those of order k to u √(1/k² + c²). The first part is of discs
-off their centre, which fades with the order, the second of gears, which does not. Two c are tried; u is the one with which
-the readings are likeliest (see `ulna.calibration.choosing.rows`), or the one that any fit has. What a study
-itself states of them is kept.
+off their centre, which fades with the order, the second of gears, which does not. Two c are tried; u is the one with
+which the readings are likeliest (`ulna.calibration.choosing.widths`), or the one that any fit has. What a study itself
+states of them is kept.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """What the readings say of every parameter that any model has, where a fit of the geometry alone ended.
 
-What an arm does beyond its geometry is small, so that models differ by one step of Gauss and Newton from there: a system of
-linear equations for each, of sums over the rows of each group, in place of a fit. Errors of readings left out are then
-computed with the arm itself, nothing linear in them.
+What an arm does beyond its geometry is small, so that models differ by one step of Gauss and Newton from there: a
+system of linear equations for each, of sums over the rows of each group, in place of a fit. Errors of readings left out
+are then computed with the arm itself, nothing linear in them.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ DRAWN = {
     "joint.*.d": ("mm", 1.0),
     "probe.*": ("mm", 5.0),
 }
-"""Geometry that is known from a drawing before any reading: its unit, and how many times less well than anything is known
-(somebody mounted a probe). Without that, blocks and geometry imitate each other."""
+"""Geometry that is known from a drawing before any reading: its unit, and how many times less well than anything is
+known (somebody mounted a probe). Without that, blocks and geometry imitate each other."""
 RIDGE = 1e-10
 """Of columns of unit norm: what no reading shows stays where it is."""
 
@@ -135,7 +135,7 @@ def rows_of(groups: Groups, blocks: Sequence[str], orders: Sequence[int]) -> Row
     of_group = [both[group == k] for k in range(groups.count)]
     start = assembled.problem.parameters
     off = fitted.parameters[free] - start[free]
-    u, drawn_u = np.full(len(free), np.inf), {}
+    u, drawn_u = np.full(len(free), np.inf), dict[str, float]()
     for unit, known in (("rad", study.fit.known_angle_rad), ("mm", study.fit.known_length_mm)):
         for times in sorted({times for own, times in DRAWN.values() if own == unit}):
             patterns = [pattern for pattern, own in DRAWN.items() if own == (unit, times)]

@@ -1,8 +1,8 @@
 """How large amplitudes of harmonics are before any reading: such that all readings together are likeliest.
 
-With the geometry and other blocks taken out of the rows, amplitudes of order k are τ w_k times standard normal numbers. In
-the axes of the matrix of information the restricted likelihood (Patterson and Thompson 1971) of τ² over the variance of a row
-is a sum, and its maximum is found on a grid. Amplitudes that nothing shows come out as none.
+With the geometry and other blocks taken out of the rows, amplitudes of order k are τ w_k times standard normal numbers.
+In the axes of the matrix of information the restricted likelihood (Patterson and Thompson 1971) of τ² over the variance
+of a row is a sum, and its maximum is found on a grid. Amplitudes that nothing shows come out as none.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ def known_of(rows: Rows, model: Model) -> Known:
         first, variance = _likeliest(rows, gram, equations, (which[~own], which[own]), shape)
         u[own] = first * shape
         return Known(which, u, variance, first)
-    first = None
+    usual: float | None = None
     if width is not None:
-        first = float(u[[rows.extra[k] == HARMONICS and rows.order[k] == 1 for k in which]].mean())
-    return Known(which, u, _settled(rows, gram, equations, which, u), first)
+        usual = float(u[[rows.extra[k] == HARMONICS and rows.order[k] == 1 for k in which]].mean())
+    return Known(which, u, _settled(rows, gram, equations, which, u), usual)
 
 
 def falling(width: Width, order: I64) -> F64:

@@ -65,6 +65,7 @@ LOOKS = {
     "outliers": " tall",
     "placements": " tall",
     "extras": "",
+    "tried": " tall",
     "files": "",
 }
 
