@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from ulna.study.data import FitOptions, Prior
 from ulna.study.study import Study
 
 
-def of_eccentric(rad: float, **fit: object) -> Study:
+def of_eccentric(rad: float, **fit: Any) -> Study:
     return study_of(eccentric(rad), platinum(wrong=0.3), **fit)
 
 
@@ -135,7 +136,7 @@ def test_what_the_study_states_of_amplitudes_stands() -> None:
         ({"extras": ["autoo"]}, "expected"),
     ],
 )
-def test_what_cannot_be_combined_is_said(fit: dict[str, object], said: str) -> None:
+def test_what_cannot_be_combined_is_said(fit: dict[str, Any], said: str) -> None:
     with pytest.raises(ulna.UlnaInputError, match=said):
         ulna.calibrate(of_eccentric(3e-4), **fit)
 
@@ -144,5 +145,9 @@ def test_very_many_readings_are_thinned() -> None:
     study = of_eccentric(3e-4)
     (group,) = study.readings
     many = replace(study, readings=[group.select(np.tile(np.arange(240), 40))])
-    assert sum(len(each) for each in thinned(many).readings) <= MOST_READINGS + 40 * 40 * 40
+    (fewer,) = thinned(many).readings
+    # whole placements, and no fewer than can be left out one by one
+    assert len(many.readings[0]) > MOST_READINGS
+    assert len(np.unique(fewer.placement_code)) == 5
+    assert len(fewer) == 5 * 1600
     assert thinned(study) is study
