@@ -98,6 +98,10 @@ PEERS_PYTHON ?= $(BIN)/python
 bench: build ## time the core and the peers that are installed, side by side; writes docs/benchmarks/results.md
 	$(BIN)/python -m benchmarks --python $(PEERS_PYTHON)
 
+.PHONY: nist
+nist: build ## NIST's reference problems and fits through the solver and the geometry; writes the tables of the docs
+	ULNA_NIST="$(CURDIR)/docs/benchmarks" cargo test --locked --release --package ulna --test nist
+
 .PHONY: example-data
 example-data: build ## make the readings of examples/platinum anew (fixed seed: nothing changes unless the generator did)
 	$(BIN)/python examples/platinum/generate.py

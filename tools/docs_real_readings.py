@@ -5,6 +5,7 @@ import math
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +88,7 @@ UR10_MASSES = (
     (0.365, (0.0, 0.0, 66.0)),
 )
 SCATTER, LENGTH, COORDINATE = "seat_scatter_mean_mm", "length_error_mean_abs_mm", "coordinate_error_mean_mm"
+SCATTER_RMS, COORDINATE_RMS = "seat_scatter_rms_mm", "coordinate_error_rms_mm"
 VERDICTS = {"earned": "earned its place", "undecided": "cannot be told", "not-earned": "made it worse"}
 
 Masses = Sequence[tuple[float, tuple[float, float, float]]]
@@ -236,6 +238,49 @@ def _coordinate_errors(folder: Path, name: str, more: str, judged: Sequence[str]
     return [float(one["overall"][COORDINATE]) for one in found]
 
 
+def intervals(folder: Path) -> list[str]:
+    """How many of what was left out lie inside their stated 95 % intervals; after `masses` and `tracked`."""
+    lines = ["| readings | fitted | judged on | rms error / mm | points inside | lengths inside |"]
+    lines.append("|---|---|---|---:|---:|---:|")
+    for robot, words in ROBOTS.items():
+        for fitted in [*BEYOND][:6:5]:
+            study = _variant(folder, f"{robot}/study.toml", "intervals", BEYOND[fitted])
+            found = _json(["cross-validate", study], folder)
+            held = _inside(found["coverage"])
+            lines.append(f"| {words} | {fitted} | places left out | {found['after'][SCATTER_RMS]:.3f} | {held} |")
+    judged = {"ur10-1/held-out.toml": "1195 poses held out", "other/study.toml": "Series D, four months later"}
+    for fitted in [*TRACKED][:: len(TRACKED) - 1]:
+        quick = TRACKED[fitted].replace("[fit]\n", "[fit]\njudge_extras = false\n")
+        study = _variant(folder, "ur10-1/study.toml", "intervals", quick)
+        _done(["calibrate", study, "-o", "ur10-1/intervals", "--force"], folder)
+        for other, words in judged.items():
+            found = _json(["evaluate", "ur10-1/intervals", other], folder)
+            held = _inside(found["coverage"])
+            lines.append(
+                f"| UR10, laser tracker | {fitted} | {words} | {found['overall'][COORDINATE_RMS]:.3f} | {held} |"
+            )
+    return lines
+
+
+def intervals_said(folder: Path) -> list[str]:
+    """What a command prints where too few hold; after `sockets`."""
+    printed = _done(["cross-validate", "panda_1/study.toml"], folder).stdout.splitlines()
+    start = next(k for k, line in enumerate(printed) if line.startswith("Inside their stated"))
+    block = takewhile(lambda line: line.strip(), printed[start:])
+    return ["```text", *(line.rstrip() for line in block), "```"]
+
+
+def _inside(coverage: Mapping[str, Any]) -> str:
+    """Of points and lengths: the share in %, with its interval, bold where the stated u is too small."""
+    cells = []
+    for name in ("points", "lengths"):
+        share = coverage[name]
+        said = f"{100 * share['share']:.1f}"
+        said = f"**{said}**" if share["high"] < 0.95 else said
+        cells.append(f"{said} ({100 * share['low']:.0f}–{100 * share['high']:.0f})")
+    return " | ".join(cells)
+
+
 def real_readings_tables() -> dict[str, str] | None:
     """Name → Markdown table, or the study's tables that made it; None where the data are not at hand."""
     if not DATA.is_dir():
@@ -250,6 +295,8 @@ def real_readings_tables() -> dict[str, str] | None:
             "beyond": _left_out(folder, BEYOND, "beyond", [SCATTER, LENGTH]),
             "verdicts": verdicts(folder),
             "tracked": tracked(folder),
+            "intervals": intervals(folder),
+            "intervals-said": intervals_said(folder),
             "recipe-tracked": ["```toml", *list(TRACKED.values())[-1].splitlines(), "```"],
         }
     return {name: "\n".join(lines) + "\n" for name, lines in tables.items()}

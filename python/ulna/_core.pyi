@@ -290,7 +290,7 @@ class Fitted:
     def identifiability(self) -> Identifiability: ...
     @property
     def covariance(self) -> F64:
-        """(k, k) over `covariance_columns`, rad and mm; with stated noise as stated, else scaled by the residuals;
+        """(k, k) over `covariance_columns`, rad and mm, for readings of that `variance`;
         lost directions held at their values. All of it NaN where no degrees of freedom are left to
         estimate it from."""
     @property

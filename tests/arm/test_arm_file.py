@@ -127,3 +127,11 @@ def test_shapes_of_angles(tmp_path: Path) -> None:
         arm.tip(np.zeros((5, 2)), "bent")
     with pytest.raises(UlnaInputError, match="2 probes"):
         arm.tip(np.zeros((5, 3)))
+
+
+def test_a_number_that_a_joint_does_not_use_is_not_left_out_quietly(tmp_path: Path) -> None:
+    """A Hayati joint has no place for a d in the file: what was read again would be another arm."""
+    joints = (Joint(0.1, 0.01, 300.0, 5.0, 0.02, model="hayati"), Joint())
+    with pytest.raises(UlnaInputError, match=r"joint 1 has d = 5, which its model does not use; expected 0"):
+        Arm("odd", joints, {"p": Probe(1.0, 2.0, 3.0)}).save(tmp_path / "arm.toml")
+    assert not (tmp_path / "arm.toml").exists()

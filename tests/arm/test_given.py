@@ -57,8 +57,8 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "urdf_text": urdf_text,
     "dh_table": lambda arm: dh_table(arm, "dh", Path("arm")),
     "evaluate": lambda arm: ulna.evaluate(arm, PLATINUM / "check.toml").overall,
-    "measure": lambda arm: ulna.measure(arm, np.full((2, 7), 0.3), encoder_u_rad=5e-6).covariance_mm2.tolist(),  # type: ignore[union-attr]
-    "measure a file": lambda arm: ulna.measure(arm, PLATINUM / "length.csv", encoder_u_rad=5e-6).table.rows(),  # type: ignore[union-attr]
+    "measure": lambda arm: ulna.measure(arm, np.full((2, 7), 0.3)).points_mm.tolist(),
+    "measure a file": lambda arm: ulna.measure(arm, PLATINUM / "length.csv").table.select("x", "y", "z").rows(),  # type: ignore[union-attr]
 }
 
 
@@ -71,10 +71,14 @@ def test_functions_take_all_of_them(function: Callable[[Any], Any], result: ulna
 
 def test_a_result_brings_the_noise_that_its_study_stated(result: ulna.Result, folder: Path) -> None:
     q = np.full((1, 7), 0.3)
-    of_arm, stated = ulna.measure(result.arm, q), ulna.measure(result.arm, q, encoder_u_rad=5e-6)
-    assert (of_arm.u_mm < stated.u_mm).all()  # type: ignore[operator]
+    of_arm, encoders = ulna.measure(result.arm, q), ulna.measure(result.arm, q, encoder_u_rad=5e-6)
+    assert (of_arm.u_mm < encoders.u_mm).all()  # type: ignore[operator]
+    assert [note.split(":")[0] for note in of_arm.notes] == ["How its readings scatter is not in the uncertainties"]
+    touched_mm = np.sqrt(encoders.u_mm**2 + 0.008**2)  # type: ignore[operator]
     for given in (result, folder, ulna.Result.load(folder)):
-        np.testing.assert_array_equal(ulna.measure(given, q).u_mm, stated.u_mm)
+        found = ulna.measure(given, q)
+        np.testing.assert_allclose(found.u_mm, touched_mm, rtol=1e-12)  # type: ignore[arg-type]
+        assert found.notes == []
 
 
 def test_verify_takes_arms_in_memory(result: ulna.Result, folder: Path, tmp_path: Path) -> None:

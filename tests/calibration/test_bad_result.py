@@ -14,6 +14,7 @@ from tests.small_study import ARM, says
 import ulna
 from ulna import Arm, UlnaInputError
 from ulna.arm.file import arm_document
+from ulna.uncertainties.assess import check_known
 
 NAMES = ["joint.1.a", "joint.2.d", "probe.bent.x"]
 ROOT = np.random.default_rng(1).normal(0, 1e-3, (3, 2))  # of rank 2: on the edge of what is allowed
@@ -95,6 +96,19 @@ CASES: dict[str, tuple[Callable[[dict[str, Any]], None], tuple[str, ...]]] = {
         put("provenance", "noise", "encoder_rad", [1e-5] * 4),
         ("'provenance.noise.encoder_rad'", "3 positive numbers"),
     ),
+    "negative scatter": (
+        put("fit", {"reading_scatter": {"touch_mm": -0.01}}),
+        ("'fit.reading_scatter.touch_mm'", "'-0.01'", "expected a positive number", "calibrate again"),
+    ),
+    "scatter in words": (
+        put("fit", {"reading_scatter": {"unexplained_mm": "some"}}),
+        ("'fit.reading_scatter.unexplained_mm'", "'some'"),
+    ),
+    "scatter of no number": (
+        put("fit", {"reading_scatter": {"degrees_of_freedom": True}}),
+        ("'fit.reading_scatter.degrees_of_freedom'", "'True'"),
+    ),
+    "scatter no table": (put("fit", {"reading_scatter": [0.1]}), ("'fit.reading_scatter'", "expected a table")),
     "negative noise": (put("provenance", "noise", "encoder_rad", 0, -1e-5), ("'provenance.noise.encoder_rad'",)),
 }
 
@@ -117,3 +131,37 @@ def test_a_sound_result_is_taken_also_where_nothing_could_be_estimated(tmp_path:
     assert measured(tmp_path, whole)["u_x"][0] is None
     whole["covariance"] = {"names": [], "matrix": []}
     assert measured(tmp_path, whole)["u_x"][0] > 0  # the encoders' noise alone
+
+
+def test_the_scatter_of_a_result_is_in_every_point(tmp_path: Path) -> None:
+    """Beside what the parameters and the encoders make of it, in each coordinate alike."""
+    whole = document(tmp_path)
+    whole["identifiability"]["lost"] = []
+    alone = measured(tmp_path, whole)
+    whole["fit"] = {"reading_scatter": {"factor": 2.0, "unexplained_mm": 0.03}}
+    whole["provenance"]["noise"]["seat_mm"] = 0.04
+    more = measured(tmp_path, whole)
+    for axis in ("u_x", "u_y", "u_z"):
+        assert more[axis][0] ** 2 - alone[axis][0] ** 2 == pytest.approx(0.03**2 + 0.04**2, rel=1e-6)
+
+
+def test_why_no_uncertainty_can_be_given_is_told(tmp_path: Path) -> None:
+    """No degrees of freedom; or a loss and too few readings for each parameter."""
+    whole = document(tmp_path)
+    whole["identifiability"]["lost"] = []
+    whole["covariance"]["matrix"] = [[None] * 3] * 3
+    counts = {"observations": 60, "placement_unknowns": 20, "degrees_of_freedom": 15.0, "loss": "huber"}
+    for fit, said in (
+        (None, "the calibration had no degrees of freedom"),
+        (counts | {"degrees_of_freedom": 0.0}, "the calibration had no degrees of freedom"),
+        (counts, "with loss 'huber' the calibration had 1.6 equations for each parameter, and of fewer than 2.5"),
+        (counts | {"loss": "none"}, "held parameters of an earlier one that gave no uncertainties"),
+    ):
+        whole["fit"] = fit
+        path = tmp_path / "result.json"
+        path.write_text(json.dumps(whole))
+        (note,) = ulna.measure(path, np.zeros((1, 3)), "bent").notes
+        assert said in note
+        with pytest.raises(UlnaInputError) as caught:
+            check_known(Arm.load(path))
+        says(str(caught.value), said, "more readings" if fit is None else "")

@@ -80,4 +80,4 @@ def test_a_report_of_real_readings(shared_data, tmp_path):
     assert {f"joint-{k}" for k in range(1, 8)} | {"space", "correlation", "lengths"} <= set(names)
     words = " ".join("".join(page.words).split())
     assert "Readings: 497" in words
-    assert "determine 23 of 27 free parameters" in words
+    assert "determine 25 of 27 free parameters" in words

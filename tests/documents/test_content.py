@@ -157,12 +157,12 @@ def test_parameters_have_expanded_uncertainties(lengths, of_lengths):
 
 
 def test_stated_noise_has_the_normal_factor(tmp_path):
-    study = write_lengths(tmp_path, noise="[noise]\nencoder = 5e-6\nseat = 0.01")
+    study = write_lengths(tmp_path, noise="[noise]\nencoder = 5e-7\nseat = 0.007")
     content = gather(calibrated(study))
     assert math.isinf(content.parameters.degrees_of_freedom)
     assert content.parameters.k == pytest.approx(stats.norm.ppf(0.975))
-    assert content.environment.encoder_rad == [5e-6] * 7
-    assert content.environment.seat_mm == 0.01
+    assert content.environment.encoder_rad == [5e-7] * 7
+    assert content.environment.seat_mm == 0.007
     lost = [row for row in content.parameters.rows if row.status == "not-determined"]
     assert {row.name for row in lost} == {"joint.1.theta0", "joint.1.d"}
     assert {row.cause for row in lost} == {"base-frame"}

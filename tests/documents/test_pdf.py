@@ -12,6 +12,7 @@ from tests.cli_runs import assert_bad_input, run, write_lengths
 from tests.pdf_reading import Pdf, holds, squeezed
 from tests.reports import calibrated, seats_study
 
+from ulna.arm.unknown import Unknown
 from ulna.calibration.extras import JudgedExtra
 from ulna.documents.content.content import Content
 from ulna.documents.gather import gather
@@ -135,7 +136,8 @@ def test_a_fit_that_did_not_converge_says_so_first(lengths, lab):
 def test_without_degrees_of_freedom_there_is_no_uncertainty_and_blocks_are_judged(lengths):
     content = gather(lengths)
     rows = [dataclasses.replace(row, expanded=None, u=None, ratio=None) for row in content.parameters.rows]
-    known = dataclasses.replace(content.parameters, rows=rows, k=float("nan"), degrees_of_freedom=0.0)
+    nothing = {"k": float("nan"), "degrees_of_freedom": 0.0, "unknown": Unknown("freedom")}
+    known = dataclasses.replace(content.parameters, rows=rows, **nothing)
     block = JudgedExtra("encoder-harmonics", "length_error_mean_mm", 0.05, 0.03, 0.02, None, 1, "5", "earned", 2)
     pdf = Pdf(render(dataclasses.replace(content, parameters=known, extras=[block])))
     holds(pdf, "no uncertainty can be estimated", "encoder harmonics, order 2", "earned its place")

@@ -12,6 +12,7 @@ from tests import dcc_reading as reading
 
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests
 from ulna.documents.dcc.document import dcc_certificate
+from ulna.verification.decision import DecisionRule
 
 HERE = Path(__file__).resolve().parents[1]
 RESULT = HERE / "data" / "fossils" / "result-1.json"
@@ -36,8 +37,7 @@ def stated_of(*values: StatedTest) -> StatedTests:
         "as-left",
         "ISO 10360-12:2016",
         "From secondary sources.",
-        "1.65u",
-        2.0,
+        DecisionRule("1.65u", 2.0, 0.95),
         "0.1.0",
         values,
         files=[("v.json", "0")],

@@ -1,7 +1,7 @@
 """Least-squares fits against NIST's reference pairs of its Algorithm Testing System (ASME B89.4.10): 30 spheres, 30
 planes, 30 cylinders. Points are given to five decimals, the reference fits of those very points to twenty digits.
 
-The data are a work of the US government; `crates/ulna/tests/geometry.rs` says where they come from."""
+The data are a work of the US government; `crates/ulna/tests/nist/pairs.rs` says where they come from."""
 
 from __future__ import annotations
 

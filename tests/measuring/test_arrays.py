@@ -153,7 +153,7 @@ def test_a_probe_that_was_not_calibrated_has_no_uncertainty() -> None:
     found = ulna.measure(arm, poses(4), ["bent", "straight", "bent", "straight"])
     assert found.covariance_mm2 is not None
     assert np.isnan(found.covariance_mm2).all(axis=(1, 2)).tolist() == [False, True, False, True]
-    assert "probe 'straight'" in found.notes[0]
+    assert "probe 'straight'" in found.notes[-1]
     assert "REMEDY" in repr(found)
     together = found.joint_covariance_mm2([0, 1, 2])
     assert np.isnan(together[3:6]).all()

@@ -125,7 +125,8 @@ def test_no_uncertainty_where_the_point_depends_on_what_was_lost(tmp_path: Path)
     for column in ("u_x", "u_y", "u_z"):
         assert done.table[column].is_null().to_list() == [False, True] * 5
     assert done.table["x"].null_count() == 0
-    (note,) = done.notes
+    noise, note = done.notes
+    assert noise.startswith("How its readings scatter is not in")
     assert "probe 'straight'" in note
     assert "probe.straight.x" in note
     assert "Why: BECAUSE. Remedy: REMEDY." in note

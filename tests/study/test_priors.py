@@ -16,14 +16,19 @@ TOUCHES = virtual.Touches(5e-6, 0.008)
 NORMAL_95 = 1.959963984540054
 
 
-def test_a_tip_by_bayes_rule():
-    """Joints held, one seat at known coordinates: linear. The posterior is A⁻¹ b with A = JᵀWJ + 1/u²."""
+@pytest.mark.parametrize(("off_mm", "contradicted"), [([0.0008, -0.003, 0.005], False), ([0.02, -0.01, 0.005], True)])
+def test_a_tip_by_bayes_rule(off_mm, contradicted):
+    """Joints held, one seat at known coordinates: linear. The posterior is A⁻¹ b with A = JᵀWJ/s² + 1/u².
+
+    s² is 1 where the readings bear out their stated noise. A prior 20 of its u off leaves residuals that do not,
+    and then s² is theirs: the sum of squares, of the readings alone, over n - tr H.
+    """
     truth, rng = table_4(), np.random.default_rng(1)
     group = virtual.coordinates(truth, rng, 40, False, TOUCHES)
     hold = np.ones(27, bool)
     hold[24:] = False
     problem = core_problem(truth, [group], STATED)
-    values, u = truth.parameters[24:] + np.array([0.02, -0.01, 0.005]), np.array([0.001, 0.004, 10.0])
+    values, u = truth.parameters[24:] + np.array(off_mm), np.array([0.001, 0.004, 10.0])
     for k in range(3):
         problem.add_prior(24 + k, values[k], u[k])
     found = _core.fit(problem, hold)
@@ -32,9 +37,14 @@ def test_a_tip_by_bayes_rule():
     white = np.linalg.inv(np.linalg.cholesky(group.covariance(arm, STATED.encoder_rad, STATED.seat_mm)))
     j = (white @ group.jacobian(arm, np.zeros(0))[0].reshape(-1, 3, 27))[:, :, 24:].reshape(-1, 3)
     r = (white @ group.residuals(arm, np.zeros(0)).reshape(-1, 3, 1)).ravel()
-    a = j.T @ j + np.diag(1 / u**2)
-    b = j.T @ (j @ found.parameters[24:] - r) + values / u**2
-    np.testing.assert_allclose(found.parameters[24:], np.linalg.solve(a, b), rtol=0, atol=1e-7)
+    s2 = found.variance
+    a = j.T @ j / s2 + np.diag(1 / u**2)
+    b = j.T @ (j @ found.parameters[24:] - r) / s2 + values / u**2
+    assert found.degrees_of_freedom == pytest.approx(len(r) - np.trace(j @ np.linalg.solve(a, j.T)) / s2, rel=1e-4)
+    assert s2 == pytest.approx(r @ r / found.degrees_of_freedom if contradicted else 1.0, rel=1e-3)
+    np.testing.assert_allclose(
+        found.parameters[24:], np.linalg.solve(a, b), rtol=0, atol=1e-6 if contradicted else 1e-7
+    )
     np.testing.assert_allclose(found.covariance, np.linalg.inv(a), rtol=1e-4)
     np.testing.assert_array_equal(found.priors, np.stack([values, u], axis=1))
 

@@ -216,9 +216,9 @@ def test_held_parameters_count_as_exact_and_are_told(calibrated) -> None:
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
-    """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage.py does it
+    """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage does it
     a thousand times."""
-    from benchmarks.coverage import by_calibrations, by_covariance
+    from benchmarks.coverage.virtual import by_calibrations, by_covariance
 
     held: dict[str, list[bool]] = {}
     truth = true_arm(SEVEN)
@@ -375,8 +375,9 @@ def test_wrong_tasks(result: Path, tmp_path: Path) -> None:
 
 def test_options_of_the_fit_do_not_matter_to_the_type(calibrated) -> None:
     """A study with priors or held parameters gives a covariance with zeros; a draw from it stays where it is held."""
-    study, _ = calibrated
-    held = ulna.calibrate(replace(study, fit=FitOptions(hold=["joint.3.*", "joint.1.theta0", "joint.1.d"])))
+    study, arm = calibrated
+    begun = study.with_arm(replace(arm, uncertainty=None))
+    held = ulna.calibrate(replace(begun, fit=FitOptions(hold=["joint.3.*", "joint.1.theta0", "joint.1.d"])))
     (value,) = assess(held.arm, task_of("length", [0, 1], poses(2, 10)), seed=1).values
     assert value.monte_carlo is not None
     assert value.monte_carlo.u == pytest.approx(value.u, rel=0.02)

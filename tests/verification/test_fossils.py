@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.formats.test_schema import FOLDER, _known
 
 import ulna
+from ulna.verification.conformity import Made
 from ulna.verification.result_file import load_verification
 
 FOSSILS = Path(__file__).parents[1] / "data" / "fossils"
@@ -49,18 +51,42 @@ def test_verify_1_with_profile_1() -> None:
     assert [state.state for state in found.states] == ["as-found"]
 
 
-def test_verification_1() -> None:
-    loaded, _ = load_verification(FOSSILS / "verification-1.json")
+#: keys that came after the fossil without them
+LATER = {"scanner", "r", "conformity", "risk"}
+FOSSIL = [("verify-1.toml", "verification-1.json", LATER), ("verify-1-risk.toml", "verification-1-risk.json", set())]
+
+
+def older(value: Any, later: set[str]) -> Any:
+    """A document as it was before those keys."""
+    if isinstance(value, dict):
+        return {key: older(inner, later) for key, inner in value.items() if key not in later}
+    return [older(inner, later) for inner in value] if isinstance(value, list) else value
+
+
+def test_verify_1_with_what_decisions_risk() -> None:
+    found = ulna.verify(FOSSILS / "verify-1-risk.toml")
+    assert (found.rule.rule, found.rule.r, found.plan.file.scanner) == ("rU", 0.7, "laser line scanner")
+    figures = found.states[0].figures
+    size, form = figures["P_Size.Sph.1x25:Tact.AArm"].risk, figures["P_Form.Sph.1x25:Tact.AArm"].risk
+    assert size is not None
+    assert size.process == Made(0.001, 0.01, "normal")
+    assert form is not None
+    assert form.process == Made(0.02, 0.008, "gamma")
+
+
+@pytest.mark.parametrize(("plan", "fossil", "later"), FOSSIL)
+def test_verification_1(plan: str, fossil: str, later: set[str]) -> None:
+    loaded, _ = load_verification(FOSSILS / fossil)
     assert loaded.arm == "a fossil of every key"
     assert loaded.states[0].tests[0].figures[0].budget[0].name == "calibration"
-    document = json.loads((FOSSILS / "verification-1.json").read_text(encoding="utf-8"))
+    document = json.loads((FOSSILS / fossil).read_text(encoding="utf-8"))
     schema = json.loads((FOLDER / "ulna-verification-1.json").read_text(encoding="utf-8"))
     assert _known(schema, schema, document, "") == []
     assert loaded.provenance.files[0].rows == 42
     assert loaded.environment.temperature is not None
     again = loaded.model_dump(exclude_unset=True)
     assert again == document, "one model reads and writes: nothing is lost, nothing is added"
-    fresh = ulna.verify(FOSSILS / "verify-1.toml").as_dict()
+    fresh = older(ulna.verify(FOSSILS / plan).as_dict(), later)
     assert fresh.keys() == document.keys()
     for new, old in zip(fresh["states"][0]["tests"], document["states"][0]["tests"], strict=True):
         for ours, theirs in zip(new["figures"], old["figures"], strict=True):
@@ -69,7 +95,8 @@ def test_verification_1() -> None:
             assert (ours["verdict"], ours["formula"]) == (theirs["verdict"], theirs["formula"])
 
 
-def test_verification_1_is_written_in_its_order() -> None:
+@pytest.mark.parametrize(("plan", "fossil", "later"), FOSSIL)
+def test_verification_1_is_written_in_its_order(plan: str, fossil: str, later: set[str]) -> None:
     """Keys stand as in the fossil, which a reader of the text may count on."""
 
     def order(value: object) -> object:
@@ -77,5 +104,5 @@ def test_verification_1_is_written_in_its_order() -> None:
             return [(key, order(inner)) for key, inner in value.items()]
         return [order(inner) for inner in value] if isinstance(value, list) else None
 
-    document = json.loads((FOSSILS / "verification-1.json").read_text(encoding="utf-8"))
-    assert order(ulna.verify(FOSSILS / "verify-1.toml").as_dict()) == order(document)
+    document = json.loads((FOSSILS / fossil).read_text(encoding="utf-8"))
+    assert order(older(ulna.verify(FOSSILS / plan).as_dict(), later)) == order(document)

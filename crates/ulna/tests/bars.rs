@@ -20,7 +20,7 @@ use ulna::solver::losses::Loss;
 use ulna::solver::{LeastSquares, RowBlock, RowSink};
 
 const LENGTH_MM: f64 = 443.0;
-const BARS: usize = 60;
+const BARS: usize = 100;
 /// Of these every third is touched a second time at one end: it is no single length, one way or the other.
 const MIXED: usize = 12;
 
@@ -160,7 +160,7 @@ fn alike([one, other]: &[Fitted; 2], part: f64, label: &str) {
     let n = one.free.len();
     assert_eq!(one.observations, other.observations, "{label}");
     assert_eq!(one.placement_unknowns, other.placement_unknowns, "{label}");
-    assert_eq!(one.degrees_of_freedom, other.degrees_of_freedom, "{label}");
+    assert!((one.degrees_of_freedom - other.degrees_of_freedom).abs() < 1e-6, "{label}: degrees of freedom");
     assert_eq!(one.identifiability.determined, other.identifiability.determined, "{label}");
     let u: Vec<f64> = (0..n).map(|k| other.covariance[k * (n + 1)].sqrt()).collect();
     let (a, b) = (&one.solution.parameters, &other.solution.parameters);

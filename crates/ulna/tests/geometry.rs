@@ -1,77 +1,13 @@
-//! Least-squares figures against NIST's reference pairs, and against the figure that the points were made from.
-//!
-//! `data/nist_*.txt` are 30 pairs each of points and least-squares fits, those that NIST gives away for self-checking of
-//! the Algorithm Testing System (ASME B89.4.10), a work of the US government: one line of a name, the number of points and
-//! the reference fit, then the points. A sphere's fit is centre and diameter; a plane's a point and the normal; a
-//! cylinder's a point of the axis, its direction and the diameter.
+//! Least-squares figures against the figure that the points were made from; `nist` has them against reference fits.
 
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use ulna::geometry::plane::Plane;
 use ulna::geometry::{Contact, line, point};
 
 mod common;
 use common::rng;
-
-/// Name, points and reference fit of every pair.
-fn pairs(text: &str) -> Vec<(String, Vec<Contact>, Vec<f64>)> {
-    let mut lines = text.lines();
-    let mut pairs = Vec::new();
-    while let Some(head) = lines.next() {
-        let mut words = head.split_whitespace();
-        let name = words.next().unwrap().to_string();
-        let count: usize = words.next().unwrap().parse().unwrap();
-        let fit = words.map(|word| word.parse().unwrap()).collect();
-        let point = |line: &str| {
-            let xyz: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
-            Contact { p_mm: Vector3::from_column_slice(&xyz), apart_mm: 0.0, weight: 1.0 }
-        };
-        pairs.push((name, lines.by_ref().take(count).map(point).collect(), fit));
-    }
-    assert_eq!(pairs.len(), 30);
-    pairs
-}
-
-/// Coordinates are up to a metre: reference values agree with ours in all the digits that doubles have of them.
-const OF_REFERENCE_MM: f64 = 1e-12;
-const OF_REFERENCE_RAD: f64 = 1e-12;
-
-#[test]
-fn spheres_are_those_of_nist() {
-    for (name, points, fit) in pairs(include_str!("data/nist_sphere.txt")) {
-        let found = point::sphere(&points).unwrap();
-        let off = (found.at_mm - Vector3::from_column_slice(&fit[..3])).norm();
-        let wider = (2.0 * found.radius_mm - fit[3]).abs();
-        assert!(off < OF_REFERENCE_MM && wider < OF_REFERENCE_MM, "{name}: {off:e} mm, {wider:e} mm");
-    }
-}
-
-#[test]
-fn planes_are_those_of_nist() {
-    for (name, points, fit) in pairs(include_str!("data/nist_plane.txt")) {
-        let found = Plane::at_known_distances(&points);
-        let (on, normal) = (Vector3::from_column_slice(&fit[..3]), Vector3::from_column_slice(&fit[3..6]));
-        let off = (found.normal.dot(&(on - found.middle_mm)) - found.offset_mm).abs();
-        let tilt = found.normal.cross(&normal).norm();
-        assert!(off < OF_REFERENCE_MM && tilt < OF_REFERENCE_RAD, "{name}: {off:e} mm, {tilt:e} rad");
-    }
-}
-
-#[test]
-fn cylinders_are_those_of_nist() {
-    for (name, points, fit) in pairs(include_str!("data/nist_cylinder.txt")) {
-        let found = line::cylinder(&points).unwrap();
-        let (on, along) = (Vector3::from_column_slice(&fit[..3]), Vector3::from_column_slice(&fit[3..6]));
-        let arm = on - found.foot_mm;
-        let off = (arm - found.direction * found.direction.dot(&arm)).norm();
-        let tilt = found.direction.cross(&along).norm();
-        let wider = (2.0 * found.radius_mm - fit[6]).abs();
-        let good = off < OF_REFERENCE_MM && wider < OF_REFERENCE_MM && tilt < OF_REFERENCE_RAD;
-        assert!(good, "{name}: {off:e} mm, {tilt:e} rad, {wider:e} mm");
-    }
-}
 
 fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
     StandardNormal.sample(rng)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.data import ArmData
 from ulna.arm.joint import Joint
@@ -63,6 +61,6 @@ def _joint(number: int, joint: Joint, tilted: bool, bare: bool) -> list[str]:
 
 def _known(covariance: ParameterCovariance) -> str:
     lost = f"; {len(covariance.lost)} directions not determined" if covariance.lost else ""
-    if not np.isfinite(covariance.matrix).all():
-        return f"none: no degrees of freedom to estimate it from{lost}"
+    if covariance.why_none is not None:
+        return f"none: {covariance.why_none.because}{lost}"
     return f"of {len(covariance.names)} parameters{lost}"

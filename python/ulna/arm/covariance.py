@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ulna.arm.unknown import Unknown
 from ulna.ground.arrays import F64
 from ulna.ground.digits import uncertainty
 from ulna.ground.shown import About, Shown, Table
@@ -23,6 +24,13 @@ class ParameterCovariance(Shown):
     """(k, k), rad and mm."""
     lost: list[dict[str, Any]]
     """Directions that the data did not determine: ``{"combination": {name: weight}, "because", "remedy", …}``."""
+    unknown: Unknown | None = None
+    """Why the matrix is NaN, as its calibration knew."""
+
+    @property
+    def why_none(self) -> Unknown | None:
+        """Why no uncertainty is known; None where they are."""
+        return None if np.isfinite(self.matrix).all() else self.unknown or Unknown("freedom")
 
     def over(self, names: Sequence[str]) -> F64:
         """(k, k) over these names, which contain its own; zero where it knows nothing: those parameters were held."""
@@ -39,7 +47,8 @@ class ParameterCovariance(Shown):
             combination = {name: weight for name, weight in direction["combination"].items() if name in names}
             if combination:
                 lost.append(direction | {"combination": combination})
-        return ParameterCovariance([self.names[k] for k in kept], self.matrix[np.ix_(kept, kept)], lost)
+        names_kept = [self.names[k] for k in kept]
+        return ParameterCovariance(names_kept, self.matrix[np.ix_(kept, kept)], lost, self.unknown)
 
     def about(self) -> About:
         """Standard uncertainties; correlations are in the matrix."""
@@ -50,3 +59,15 @@ class ParameterCovariance(Shown):
         return About(
             f"Covariance of {len(self.names)} parameters, mm and rad{lost}", {}, [Table(["parameter", "u"], rows)]
         )
+
+
+def root_of(covariance: F64) -> F64:
+    """(k, k) → (k, k) a matrix whose product with its transpose it is.
+
+    A covariance is singular along what is held or open: by eigenvectors, of what is scaled alike.
+    """
+    scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    scale[scale == 0.0] = 1.0
+    sizes, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    root: F64 = scale[:, None] * vectors * np.sqrt(np.maximum(sizes, 0.0))
+    return root

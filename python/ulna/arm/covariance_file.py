@@ -10,6 +10,7 @@ import numpy as np
 
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.data import ArmData
+from ulna.arm.unknown import why_unknown
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
 
@@ -32,7 +33,10 @@ def covariance_of_result(document: dict[str, Any], arm: ArmData, path: Path) -> 
         damaged(path, "covariance.names", "a name stands twice")
     for number, direction in enumerate(lost, start=1):
         _check_direction(direction, arm, path, f"identifiability.lost.{number}")
-    return ParameterCovariance(names, _matrix(rows, names, path), [dict(direction) for direction in lost])
+    matrix = _matrix(rows, names, path)
+    fit = document.get("fit")
+    unknown = why_unknown(fit if isinstance(fit, dict) else {})
+    return ParameterCovariance(names, matrix, [dict(direction) for direction in lost], unknown)
 
 
 def _matrix(rows: Any, names: list[str], path: Path) -> F64:

@@ -119,7 +119,9 @@ def arm_document(arm: ArmData) -> dict[str, Any]:
 
 
 def arm_toml(arm: ArmData) -> str:
-    """The text of an arm file, mm and rad; every number comes back exactly as it was."""
+    """The text of an arm file, mm and rad; every number comes back exactly as it was. Raises UlnaInputError for an arm
+    with numbers that its joints' models do not use: they have no place in the file."""
+    _ = arm.core  # which refuses it
     document = arm_document(arm)
     lines = [
         'format = "ulna-arm/1"',
@@ -141,5 +143,6 @@ def arm_toml(arm: ArmData) -> str:
 
 
 def save_arm(arm: ArmData, path: Path, force: bool = False) -> None:
-    """Write an arm file, whole or not at all. Raises UlnaInputError where it exists and `force` is not given."""
+    """Write an arm file, whole or not at all. Raises UlnaInputError where it exists and `force` is not given, and as
+    `arm_toml`."""
     write_file(path, arm_toml(arm), force=force)

@@ -30,11 +30,14 @@ class ReadingNoise:
     unexplained_mm: float = 0.0
     """Per coordinate: what the calibration's residuals showed beside the stated noise, which the model has not."""
     degrees_of_freedom: float = math.inf
-    """Of whatever the residuals showed of a touch."""
-    parameter_freedom: float = math.inf
-    """Degrees of freedom of the parameters' covariance: finite where it was scaled by what residuals showed."""
+    """Of whatever the residuals showed: of touches, and of the parameters' covariance, which was scaled by the same."""
     estimated: bool = False
     """Whether `seat_mm` is from residuals."""
+
+    @property
+    def known(self) -> bool:
+        """Whether anything is known of it."""
+        return self.encoder_rad is not None or self.variance_mm2 > 0.0
 
     @property
     def variance_mm2(self) -> float:
@@ -79,27 +82,33 @@ def noise_of_document(document: dict[str, Any], arm: ArmData, path: Path) -> Rea
     provenance, fit = document.get("provenance"), document.get("fit")
     noise = provenance.get("noise") if isinstance(provenance, dict) else None
     scatter = fit.get("reading_scatter") if isinstance(fit, dict) else None
-    return noise_of(noise, scatter, arm, path)
+    return noise_of(noise, scatter, arm, path, fit.get("degrees_of_freedom") if isinstance(fit, dict) else None)
 
 
-def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path) -> ReadingNoise:
-    """From the tables `provenance.noise` and `fit.reading_scatter` of a result. Raises UlnaInputError."""
+def noise_of(noise: Any, scatter: Any, arm: ArmData, path: Path, freedom_of_fit: Any = None) -> ReadingNoise:
+    """From the tables `provenance.noise` and `fit.reading_scatter` of a result. Raises UlnaInputError.
+
+    freedom_of_fit: its degrees of freedom; those that count where it says nothing of its readings' scatter, as
+    before there was that table, and no noise was stated.
+    """
     stated = noise if isinstance(noise, dict) else {}
-    shown = scatter if isinstance(scatter, dict) else {}
+    if not (scatter is None or isinstance(scatter, dict)):
+        damaged(path, "fit.reading_scatter", f"got {str(scatter)[:40]!r}, expected a table")
+    shown = scatter or {}
     factor = _positive(shown, "factor", "fit.reading_scatter.factor", path)
     less = 1.0 if factor is None else min(factor, 1.0)
     encoder_rad = _encoders(stated.get("encoder_rad"), arm, path)
     seat_mm = _positive(stated, "seat_mm", "provenance.noise.seat_mm", path)
     estimated_mm = _positive(shown, "touch_mm", "fit.reading_scatter.touch_mm", path)
-    key = "parameter_degrees_of_freedom"
-    of_parameters = _positive(shown, key, f"fit.reading_scatter.{key}", path)
     freedom = _positive(shown, "degrees_of_freedom", "fit.reading_scatter.degrees_of_freedom", path)
+    if scatter is None and noise is None and freedom_of_fit is not None:
+        key = "fit.degrees_of_freedom"
+        freedom = _positive({key: freedom_of_fit}, key, key, path) or 0.0
     return ReadingNoise(
         encoder_rad=None if encoder_rad is None else less * encoder_rad,
         seat_mm=estimated_mm if seat_mm is None else less * seat_mm,
         unexplained_mm=_positive(shown, "unexplained_mm", "fit.reading_scatter.unexplained_mm", path) or 0.0,
         degrees_of_freedom=math.inf if freedom is None else freedom,
-        parameter_freedom=math.inf if of_parameters is None else of_parameters,
         estimated=seat_mm is None and estimated_mm is not None,
     )
 
@@ -118,5 +127,5 @@ def _positive(table: dict[str, Any], key: str, where: str, path: Path) -> float 
     if value is None:
         return None
     if not (is_number(value) and value >= 0):
-        damaged(path, where, "expected a positive number")
+        damaged(path, where, f"got {str(value)[:40]!r}, expected a positive number")
     return float(value) or None

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 
 from ulna.arm.data import ArmData
 from ulna.artefacts.quantities import NAMES, QUANTITIES
+from ulna.calibration.coverage import Coverage, P
 from ulna.calibration.identify import Identification, not_determined
 from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.summary import FitSummary, GroupFigures, Parameter
-from ulna.ground.digits import figure_mm, quantity, uncertainty
+from ulna.ground.digits import degrees_of_freedom, figure_mm, quantity, uncertainty
 from ulna.ground.shown import About, Table
 
 WORDS = {name: words for each in QUANTITIES for name, words in each.words().items()}
@@ -31,10 +32,15 @@ def about_result(
     counts = {each: sum(row.status == each for row in parameters) for each in ("fitted", "held", "not-determined")}
     facts = {
         "fit": f"{ended} ({fit.termination}, {fit.iterations} iterations)",
-        "readings": f"{fit.readings}, {fit.degrees_of_freedom} degrees of freedom"
+        "readings": f"{fit.readings}, {degrees_of_freedom(fit.degrees_of_freedom)} degrees of freedom"
         + (f", chi² per degree {fit.chi2_per_dof:.3g}" if fit.chi2_per_dof is not None else ""),
         "parameters": ", ".join(f"{count} {each}" for each, count in counts.items() if count),
     }
+    scatter = fit.reading_scatter
+    if scatter is not None and scatter.touch_mm is not None:
+        facts["scatter"] = f"{uncertainty(scatter.touch_mm)} mm per coordinate of a touch, as the residuals say"
+    if scatter is not None and scatter.unexplained_mm:
+        facts["not explained"] = f"{uncertainty(scatter.unexplained_mm)} mm per coordinate, beside the stated noise"
     if outliers:
         facts["far off"] = f"{outliers} readings, in .outliers"
     rms = ["reading to fit, rms", figure_mm(fit.rms_start_mm), figure_mm(fit.rms_mm)]
@@ -65,20 +71,29 @@ def _u(row: Parameter) -> str:
 
 
 def about_evaluation(
-    arm: ArmData, readings: int, rms_mm: float, overall: Mapping[str, float], artefacts: Sequence[PlacementFigures]
+    arm: ArmData,
+    readings: int,
+    rms_mm: float,
+    overall: Mapping[str, float],
+    artefacts: Sequence[PlacementFigures],
+    coverage: Coverage | None,
 ) -> About:
-    """Over all, and how many placements there are."""
+    """Over all, how many placements there are, and what held."""
     rows = [[WORDS[name], figure_mm(overall[name])] for name in NAMES if name in overall]
     rows.append(["reading to fit, rms", figure_mm(rms_mm)])
     return About(
         f"Evaluation of '{arm.name}' on {readings} readings: rms {figure_mm(rms_mm)} mm",
-        {"placements": f"{len(artefacts)}, in .artefacts"},
+        {"placements": f"{len(artefacts)}, in .artefacts"} | _held(coverage),
         [Table(["over all", "mm"], rows)],
     )
 
 
 def about_cross_validation(
-    by: str, groups: Sequence[GroupFigures], before: Mapping[str, float], after: Mapping[str, float]
+    by: str,
+    groups: Sequence[GroupFigures],
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    coverage: Coverage | None,
 ) -> About:
     """What arms make of what they were not fitted to."""
     rows = [
@@ -89,6 +104,18 @@ def about_cross_validation(
     failed = [group.group for group in groups if not group.converged]
     return About(
         f"Cross-validation by {by}: {len(groups)} groups left out",
-        {} if not failed else {"NOT converged": f"{len(failed)}: {', '.join(failed[:5])}"},
+        ({} if not failed else {"NOT converged": f"{len(failed)}: {', '.join(failed[:5])}"}) | _held(coverage),
         [Table(["readings left out", "before / mm", "after / mm"], rows)],
     )
+
+
+def _held(coverage: Coverage | None) -> dict[str, str]:
+    """How many of the stated intervals held, and by what they are too small."""
+    if coverage is None or not coverage.shares:
+        return {}
+    small = coverage.too_small
+    said = [
+        f"{share.inside} of {share.count} {name}" + (f" (u too small by {small[name]:.2g})" if name in small else "")
+        for name, share in coverage.shares
+    ]
+    return {f"in their {100 * P:g} % intervals": ", ".join(said)}

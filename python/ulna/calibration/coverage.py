@@ -1,43 +1,22 @@
-"""Whether stated uncertainties hold on readings that a fit has not seen.
-
-Points: with tips p at features x of one standing, the rigid motion that fits them best takes a part of their errors
-with it; what is left, r = P p, has the covariance P (J C Jᵀ + D) Pᵀ, C of the parameters, D of the readings' own noise,
-each point's own. Inside is a point whose r lies in the ellipsoid of its covariance that holds p of a normal (of few
-degrees of freedom, a t) vector. Lengths: between touches of two features of one standing, no touch in two of them, u
-from the same C and D.
-"""
+"""Stated intervals that held, and what a count of them says."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ulna.arm.arm import Arm
-from ulna.arm.conditions import some_of
-from ulna.arm.lost import lost_steps
-from ulna.arm.reading_noise import ReadingNoise
-from ulna.artefacts.artefact import features_mm
-from ulna.artefacts.readings import Readings
-from ulna.ground.arrays import F64, I64
+from ulna.calibration.likely import Cause
+from ulna.ground.arrays import F64
 from ulna.ground.binomial import wilson
-from ulna.ground.quantiles import chi_squared, fisher, student
-from ulna.study.assembly import conditions_of
-from ulna.study.study import Study
 
 P = 0.95
 """Probability with which intervals are to hold."""
-TOGETHER = 300
-"""Touches of one standing whose motion is taken off together: their covariance is a matrix of 900 × 900."""
 LEAST = 20
 """Of fewer nothing is said of a factor."""
-NEAR = 1e-6
-"""Variances below this part of the largest of a point are what its motion took off."""
-SEED = 13
-MANY = 1000.0
-"""Degrees of freedom beyond which a t vector is a normal one."""
+MUCH = 0.75
+"""Intervals that would hold if they were this much of what they are, or less, are much too wide."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +37,11 @@ class Share:
         """Whether chance does not explain how few hold."""
         return self.high < P
 
+    @property
+    def too_large(self) -> bool:
+        """Whether so many hold that chance does not explain it, by intervals that are much wider than they need be."""
+        return self.low > P and self.factor is not None and self.factor < MUCH
+
 
 @dataclass(frozen=True)
 class Coverage:
@@ -66,6 +50,27 @@ class Coverage:
     points: Share | None
     """None where no feature has coordinates, or no uncertainty is known."""
     lengths: Share | None
+    likely: list[Cause] = field(default_factory=list)
+    """Where the intervals are too small: what may be why."""
+
+    @property
+    def shares(self) -> list[tuple[str, Share]]:
+        """Those that there are, each with what it is of: "points", "lengths"."""
+        both = (("points", self.points), ("lengths", self.lengths))
+        return [(name, share) for name, share in both if share is not None]
+
+    @property
+    def too_small(self) -> dict[str, float]:
+        """By what uncertainties of points or lengths are too small, beyond chance; a factor of 1 where they are
+        too few to say it. Empty where they hold."""
+        return {name: share.factor or 1.0 for name, share in self.shares if share.too_small}
+
+    @property
+    def too_large(self) -> float | None:
+        """The larger part of what was stated that would do, where all intervals that there are are much too wide."""
+        if not self.shares or not all(share.too_large for _, share in self.shares):
+            return None
+        return max(share.factor or 1.0 for _, share in self.shares)
 
 
 @dataclass(frozen=True)
@@ -75,9 +80,10 @@ class Judged:
     points: F64
     lengths: F64
 
-    def coverage(self) -> Coverage:
-        """Of all of them."""
-        return Coverage(_share(self.points), _share(self.lengths))
+    def coverage(self, likely: Sequence[Cause] = ()) -> Coverage:
+        """Of all of them; likely: why they may be too small, said where they are."""
+        found = Coverage(_share(self.points), _share(self.lengths))
+        return replace(found, likely=list(likely)) if found.too_small else found
 
     @staticmethod
     def together(parts: Sequence[Judged]) -> Judged:
@@ -89,20 +95,6 @@ class Judged:
         )
 
 
-def judged(arm: Arm, noise: ReadingNoise, study: Study) -> Judged:
-    """The study's readings by an arm that was not fitted to them, and by what is known of it; those that depend on what
-    was not determined are left out. Nothing of an arm of which no uncertainty is known."""
-    if arm.uncertainty is None or not np.isfinite(arm.uncertainty.matrix).all():
-        return Judged(np.zeros(0), np.zeros(0))
-    parts = [
-        part
-        for group in study.readings
-        if len(group.artefact.features) or group.p_rad is not None
-        for part in _of_group(_Scene(arm, noise, study, group))
-    ]
-    return Judged.together(parts)
-
-
 def _share(ratios: F64) -> Share | None:
     if not len(ratios):
         return None
@@ -110,182 +102,3 @@ def _share(ratios: F64) -> Share | None:
     low, high = wilson(inside, len(ratios), P)
     factor = float(np.quantile(ratios, P)) if len(ratios) >= LEAST else None
     return Share(len(ratios), inside, inside / len(ratios), low, high, factor)
-
-
-@dataclass(frozen=True)
-class _Scene:
-    """Readings of one artefact, and what is known of the arm."""
-
-    arm: Arm
-    noise: ReadingNoise
-    study: Study
-    group: Readings
-
-    def touched(self, second: bool, rows: I64) -> tuple[F64, F64, F64]:
-        """Tips (N, 3) mm, the root of their common covariance (N, 3, P), their own (N, 3, 3) mm², NaN where a tip
-        depends on what was not determined."""
-        part = self.group.select(rows)
-        angles = part.p_rad if second else part.q_rad
-        assert angles is not None
-        q_rad = np.ascontiguousarray(angles)
-        said = conditions_of(self.study, self.arm, part)[int(second)]
-        core = self.arm.core
-        tips, root = np.empty((len(rows), 3)), np.empty((len(rows), 3, self._root.shape[1]))
-        own = np.tile(self.noise.variance_mm2 * np.eye(3), (len(rows), 1, 1))
-        for probe in np.unique(part.probe).tolist():
-            at = np.flatnonzero(part.probe == probe)
-            there = some_of(said, at)
-            q = np.ascontiguousarray(q_rad[at])
-            tips[at] = core.tip(q, probe, **there)
-            by_parameter = core.jacobian(q, probe, **there)
-            root[at] = by_parameter @ self._root
-            open_ = (np.linalg.norm(by_parameter @ self._lost.T, axis=1) > self.noise.moves_mm).any(axis=1)
-            own[at[open_]] = np.nan
-            if self.noise.encoder_rad is not None:
-                turned = core.encoder_jacobian(q, probe, **there) * self.noise.encoder_rad
-                own[at] += turned @ turned.transpose(0, 2, 1)
-        return tips, root, own
-
-    @cached_property
-    def _lost(self) -> F64:
-        return lost_steps(self.arm)
-
-    @cached_property
-    def _root(self) -> F64:
-        known = self.arm.uncertainty
-        assert known is not None
-        covariance = known.over(self.arm.parameter_names)
-        scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        scale[scale == 0.0] = 1.0
-        sizes, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-        root: F64 = scale[:, None] * vectors * np.sqrt(np.maximum(sizes, 0.0))
-        return root[:, sizes > 1e-14 * max(float(sizes[-1]), 0.0)] if len(sizes) else root
-
-    def freedom(self, of_parameters: F64, total: F64, coordinates: float) -> F64:
-        """(N,) effective degrees of freedom of variances `total`, `of_parameters` of them from the parameters, over so
-        many coordinates of touches (GUM G.4.1)."""
-        noise = self.noise
-        estimated = noise.estimated_mm2 * coordinates
-        with np.errstate(divide="ignore"):
-            if noise.parameter_freedom == noise.degrees_of_freedom:  # one estimate
-                return np.asarray(total**2 / ((of_parameters + estimated) ** 2 / noise.degrees_of_freedom))
-            below = of_parameters**2 / noise.parameter_freedom + estimated**2 / noise.degrees_of_freedom
-            return np.asarray(total**2 / below)
-
-
-def _of_group(scene: _Scene) -> Iterator[Judged]:
-    group = scene.group
-    if group.p_rad is not None:
-        rows = np.arange(len(group))
-        (a, root_a, own_a), (b, root_b, own_b) = (scene.touched(second, rows) for second in (False, True))
-        assert group.length_mm is not None
-        yield Judged(np.zeros(0), _lengths(scene, b - a, group.length_mm, root_b - root_a, own_a + own_b))
-        return
-    features = features_mm(group.artefact)
-    code, _ = group.labels.as_they_appear()
-    rng = np.random.default_rng(SEED)
-    for standing in range(int(code.max()) + 1):
-        rows = rng.permutation(np.flatnonzero(code == standing))
-        for start in range(0, len(rows), TOGETHER):
-            some = rows[start : start + TOGETHER]
-            tips, root, own = scene.touched(False, some)
-            known = np.isfinite(own[:, 0, 0])
-            some, tips, root, own = some[known], tips[known], root[known], own[known]
-            at, u_mm = features[group.feature[some]], _u_features(group)[group.feature[some]]
-            own = own + (u_mm**2)[:, None, None] * np.eye(3)
-            yield Judged(_points(scene, tips, at, root, own), _between(scene, group.feature[some], tips, at, root, own))
-
-
-def _u_features(group: Readings) -> F64:
-    """(F,) what is not known of each feature: of a bar, its length's u shared by both ends."""
-    artefact = group.artefact
-    if artefact.feature_u_mm is not None:
-        return np.array(artefact.feature_u_mm, dtype=np.float64)
-    share = np.sqrt(0.5) if artefact.length_mm is not None else 1.0
-    return np.full(len(artefact.features), share * artefact.u_mm)
-
-
-def _points(scene: _Scene, tips: F64, at: F64, root: F64, own: F64) -> F64:
-    """Ratios of the points of one standing; none of fewer than two touches."""
-    count = len(tips)
-    if scene.group.artefact.frame == "arm":
-        left, kept, rest = tips - at, root, own
-    else:
-        if count < 2:
-            return np.zeros(0)
-        stood, moves = _motion(tips, at)
-        left = tips - stood
-        flat = root.reshape(3 * count, -1)
-        kept = (flat - moves @ (moves.T @ flat)).reshape(count, 3, -1)
-        q = moves.reshape(count, 3, -1)
-        through = np.einsum("nij,njk->nik", own, q)
-        inner = np.einsum("nij,nik->jk", q, through)
-        cross = np.einsum("nij,nkj->nik", through, q)
-        rest = own - cross - cross.transpose(0, 2, 1) + np.einsum("nij,jk,nlk->nil", q, inner, q)
-    covariance = kept @ kept.transpose(0, 2, 1) + rest
-    sizes, axes = np.linalg.eigh(covariance)
-    along = np.einsum("nji,nj->ni", axes, left)
-    counts = sizes > NEAR * np.trace(own, axis1=1, axis2=2)[:, None]
-    squared = np.where(counts, along**2 / np.where(counts, sizes, 1.0), 0.0).sum(axis=1)
-    dimensions = counts.sum(axis=1)
-    of_parameters, total = (kept**2).sum(axis=(1, 2)), np.trace(covariance, axis1=1, axis2=2)
-    freedom = scene.freedom(of_parameters, total, 3.0)
-    told = dimensions > 0
-    radius = [_squared_radius(d, float(f"{v:.3g}")) for d, v in zip(dimensions[told], freedom[told], strict=True)]
-    ratios: F64 = np.sqrt(squared[told] / radius)
-    return ratios
-
-
-@lru_cache(maxsize=4096)
-def _squared_radius(dimensions: int, freedom: float) -> float:
-    """Of the ellipsoid that holds P of a vector."""
-    if freedom > MANY:
-        return float(chi_squared(dimensions, P))
-    return dimensions * float(fisher(dimensions, freedom, P))
-
-
-def _motion(tips: F64, at: F64) -> tuple[F64, F64]:
-    """Where features (N, 3) stand that fit tips best, and an orthonormal basis (3N, k) of how they could have moved."""
-    middle_at, middle = at.mean(axis=0), tips.mean(axis=0)
-    spread = at - middle_at
-    u, _, vt = np.linalg.svd(spread.T @ (tips - middle))
-    turn = vt.T @ np.diag([1.0, 1.0, np.sign(np.linalg.det(vt.T @ u.T)) or 1.0]) @ u.T
-    lever = spread @ turn.T
-    by_turn = np.stack([np.cross(axis, lever) for axis in np.eye(3)], axis=2)
-    by_shift = np.tile(np.eye(3), (len(at), 1, 1))
-    size = float(np.abs(lever).max()) or 1.0
-    columns = np.concatenate([by_shift, by_turn / size], axis=2).reshape(3 * len(at), 6)
-    basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-    return middle + lever, basis[:, sizes > 1e-9 * sizes[0]]
-
-
-def _between(scene: _Scene, feature: I64, tips: F64, at: F64, root: F64, own: F64) -> F64:
-    """Ratios of lengths between touches of two features, no touch in two of them."""
-    first, second = [], []
-    waiting: list[int] = []
-    for k in range(len(feature)):
-        partner = next((j for j in waiting if feature[j] != feature[k]), None)
-        if partner is None:
-            waiting.append(k)
-        else:
-            waiting.remove(partner)
-            first.append(partner)
-            second.append(k)
-    if not first:
-        return np.zeros(0)
-    a, b = np.array(first), np.array(second)
-    true_mm = np.linalg.norm(at[b] - at[a], axis=1)
-    return _lengths(scene, tips[b] - tips[a], true_mm, root[b] - root[a], own[a] + own[b])
-
-
-def _lengths(scene: _Scene, apart: F64, true_mm: F64, root: F64, own: F64) -> F64:
-    length_mm = np.linalg.norm(apart, axis=1)
-    told = (length_mm > 0.0) & (true_mm > 0.0) & np.isfinite(own[:, 0, 0])
-    along = apart[told] / length_mm[told][:, None]
-    of_parameters = (np.einsum("ni,nip->np", along, root[told]) ** 2).sum(axis=1)
-    variance = of_parameters + np.einsum("ni,nij,nj->n", along, own[told], along)
-    if scene.group.p_rad is not None:
-        variance += scene.group.artefact.u_mm**2
-    k = student(scene.freedom(of_parameters, variance, 2.0), 0.5 * (1.0 + P))
-    ratios: F64 = np.abs(length_mm - true_mm)[told] / (k * np.sqrt(variance))
-    return ratios

@@ -19,10 +19,12 @@ from numpy.typing import NDArray
 
 from ulna.calibration.about import about_cross_validation
 from ulna.calibration.choosing.choose import choose, start_of
-from ulna.calibration.coverage import Coverage, Judged, judged
+from ulna.calibration.coverage import Coverage, Judged
 from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.folds import Fold, folds
+from ulna.calibration.held_out import judged
+from ulna.calibration.likely import Cause, likely_causes, together
 from ulna.calibration.placements import FigureEntry, Figures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.result_file import CrossValidationFile, ProvenanceEntry
@@ -75,7 +77,7 @@ class CrossValidation(Shown):
 
     def about(self) -> About:
         """Over all groups."""
-        return about_cross_validation(self.by, self.groups, self.before, self.after)
+        return about_cross_validation(self.by, self.groups, self.before, self.after, self.coverage)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `cross-validation.json` into a folder. Raises UlnaInputError."""
@@ -97,13 +99,14 @@ def cross_validate(
     """
     study = with_options(as_study(study), **overrides)
     how, left_out = folds(study, by)
-    groups, held = [], []
+    groups, held, likely = [], [], []
     for number, fold in enumerate(left_out):
         if progress is not None:
             progress("groups left out", number, len(left_out))
-        group, inside = _judge(study, fold)
+        group, inside, causes = _judge(study, fold)
         groups.append(group)
         held.append(inside)
+        likely.append(causes)
     if progress is not None:
         progress("groups left out", len(left_out), len(left_out))
     return CrossValidation(
@@ -112,12 +115,12 @@ def cross_validate(
         before=over_groups(group.before for group in groups),
         after=over_groups(group.after for group in groups),
         provenance=provenance(study, datetime.now(UTC)),
-        coverage=Judged.together(held).coverage(),
+        coverage=Judged.together(held).coverage(together(likely)),
     )
 
 
-def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged]:
-    """Of one group left out: its figures, and whether what the fit to the others states holds."""
+def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged, list[Cause]]:
+    """Of one group left out: its figures, whether what the fit to the others states holds, and why it may not."""
     training = study.subset([~mask for mask in fold.masks])
     test = study.subset(fold.masks)
 
@@ -151,4 +154,5 @@ def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged]:
         termination=fitted.termination,
         lost=[dict(direction) for direction in fitted.identifiability.lost],
     )
-    return group, judged(found.arm, found.noise, test)
+    arm, noise = found.arm, found.noise
+    return group, judged(arm, noise, test), likely_causes(arm, noise, test, elsewhere=False)

@@ -16,8 +16,10 @@ import polars as pl
 from ulna.arm.arm import Arm
 from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.calibration.about import about_evaluation
-from ulna.calibration.coverage import Coverage, judged
+from ulna.calibration.coverage import Coverage
 from ulna.calibration.figures import figures
+from ulna.calibration.held_out import judged
+from ulna.calibration.likely import likely_causes
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures
 from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
@@ -67,7 +69,7 @@ class Evaluation(Shown):
 
     def about(self) -> About:
         """Over all readings."""
-        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts)
+        return about_evaluation(self.arm, self.readings, self.rms_mm, self.overall, self.artefacts, self.coverage)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write `evaluation.json` and `residuals.csv` into a folder: both or none. Raises UlnaInputError."""
@@ -96,7 +98,9 @@ def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int],
         readings=sum(len(group) for group in study.readings),
         residuals=residual_table(fitting, fitted),
         provenance=provenance(study, datetime.now(UTC)),
-        coverage=None if arm.uncertainty is None else judged(arm, noise, fitting).coverage(),
+        coverage=None
+        if arm.uncertainty is None
+        else judged(arm, noise, fitting).coverage(likely_causes(arm, noise, fitting, elsewhere=True)),
     )
 
 

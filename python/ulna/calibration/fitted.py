@@ -17,6 +17,7 @@ import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.reading_noise import ReadingNoise, noise_of
+from ulna.arm.unknown import why_unknown
 from ulna.calibration.between_places import BetweenPlaces, between_places
 from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.estimators import Searched
@@ -148,7 +149,7 @@ class FittedStudy:
 
     @cached_property
     def _between(self) -> BetweenPlaces | None:
-        return between_places(self.assembled, self.core)
+        return between_places(self.study, self._arm, self.assembled, self.core)
 
     @cached_property
     def _reading_scatter(self) -> ReadingScatter | None:
@@ -166,10 +167,12 @@ class FittedStudy:
         names, hold = self.assembled.names, self.assembled.hold
         fitted_names = [names[column] for column in fitted.covariance_columns]
         lost = [dict(direction) for direction in self._identification.lost]
+        fit = {key: getattr(fitted, key) for key in ("observations", "placement_unknowns", "degrees_of_freedom")}
+        fit["loss"] = self.study.fit.loss
         known = self.study.arm.uncertainty
         kept = [k for k, name in enumerate(known.names) if hold[names.index(name)]] if known is not None else []
         if known is None or not kept:
-            return ParameterCovariance(fitted_names, of_fitted, lost)
+            return ParameterCovariance(fitted_names, of_fitted, lost, why_unknown(fit))
         held_names = [known.names[k] for k in kept]
         held = known.matrix[np.ix_(kept, kept)]
         columns = np.array([names.index(name) for name in held_names], dtype=np.int64)
@@ -177,7 +180,7 @@ class FittedStudy:
         both = follow @ held
         matrix = np.block([[of_fitted + both @ follow.T, both], [both.T, held]])
         earlier = [dict(direction) for direction in known.lost if set(direction["combination"]) & set(held_names)]
-        return ParameterCovariance(fitted_names + held_names, matrix, lost + earlier)
+        return ParameterCovariance(fitted_names + held_names, matrix, lost + earlier, why_unknown(fit))
 
     def _parameters(self) -> list[Parameter]:
         """Start, value, standard uncertainty, status and prior of every parameter, in their order."""

@@ -16,8 +16,8 @@ from ulna.arm.arm import Arm
 from ulna.arm.covariance import ParameterCovariance
 from ulna.artefacts.artefact import features_mm
 from ulna.artefacts.readings import Readings
+from ulna.calibration.touched import touched
 from ulna.ground.arrays import F64, I64
-from ulna.study.assembly import conditions_of
 from ulna.study.data import Noise, StudyData
 
 #: features nearer to a line, or to each other, than this part of their spread are on it
@@ -128,22 +128,11 @@ class _Scene:
 
     def _touches(self) -> tuple[F64, F64, F64]:
         """Tips (N, 3), their derivatives by the parameters of the covariance (N, 3, P), weights (N, 3, 3)."""
-        group, core, rows = self.group, self.arm.core, len(self.group)
         noise = self.study.noise or Noise()
         names = self.arm.parameter_names
         columns = [names.index(name) for name in self.covariance.names if name in names]
-        tips, by_parameters = np.empty((rows, 3)), np.empty((rows, 3, len(columns)))
-        covariance = np.zeros((rows, 3, 3))
-        for probe in np.unique(group.probe):
-            own = np.flatnonzero(group.probe == probe)
-            part = group.select(own)
-            q_rad = np.ascontiguousarray(part.q_rad)
-            said = conditions_of(self.study, self.arm, part)[0]
-            tips[own] = core.tip(q_rad, int(probe), **said)
-            by_parameters[own] = core.jacobian(q_rad, int(probe), **said)[:, :, columns]
-            if noise.encoder_rad is not None:
-                moved = core.encoder_jacobian(q_rad, int(probe), **said) * noise.encoder_rad
-                covariance[own] = moved @ moved.transpose(0, 2, 1)
+        found = touched(self.arm, self.study, self.group, noise.encoder_rad)
+        covariance = found.by_encoders_mm2
         stated = noise.encoder_rad is not None or noise.seat_mm is not None
         covariance *= self.variance
         variance = self.variance * ((noise.seat_mm or 0.0) ** 2 if stated else 1.0)
@@ -152,7 +141,7 @@ class _Scene:
         covariance += (variance + floor)[:, None, None] * np.eye(3)
         if np.isfinite(covariance).all():
             covariance[:] = np.linalg.inv(covariance)
-        return tips, by_parameters, covariance
+        return found.tips_mm, found.by_parameter[:, :, columns], covariance
 
     def _u(self, columns: F64, by_parameters: F64, weights: F64) -> F64 | None:
         """Covariances of origin and turns; None where nothing is known of the noise."""

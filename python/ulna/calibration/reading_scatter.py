@@ -10,7 +10,7 @@ import numpy as np
 import ulna._core as _core
 from ulna.artefacts.readings import Readings
 from ulna.calibration.between_places import BetweenPlaces
-from ulna.calibration.summary import ReadingScatter
+from ulna.calibration.summary import FEW_PLACES, ReadingScatter
 from ulna.ground.arrays import F64
 from ulna.study.study import Study
 
@@ -26,12 +26,11 @@ def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | N
     if not math.isfinite(variance) or variance < 0.0:
         return None
     groups = list(enumerate(study.readings))
-    freedom, elsewhere = _freedom(core, between)
+    freedom = _freedom(core, between)
     shown = ReadingScatter(
         degrees_of_freedom=None if math.isinf(freedom) else freedom,
         places=None if between is None else between.places,
         place_factor=None if between is None else between.factor,
-        parameter_degrees_of_freedom=None if math.isinf(elsewhere) else elsewhere,
     )
     if study.noise is None:
         ends = sum(len(group) * _ends(group) for _, group in groups) / sum(len(group) for _, group in groups)
@@ -43,14 +42,13 @@ def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | N
     return replace(shown, factor=math.sqrt(variance), unexplained_mm=math.sqrt(more_mm2))
 
 
-def _freedom(core: _core.Fitted, between: BetweenPlaces | None) -> tuple[float, float]:
-    """Degrees of freedom of the scatter, and of the parameters' uncertainties; infinite of what was stated."""
-    freedom = core.degrees_of_freedom if core.estimated else math.inf
-    if between is None:
-        return freedom, freedom
-    if core.estimated and between.few:  # one of them may be unlike the next in either
-        return min(freedom, between.places), min(freedom, between.places)
-    return freedom, min(freedom, between.places) if between.factor > 1.0 else freedom
+def _freedom(core: _core.Fitted, between: BetweenPlaces | None) -> float:
+    """Degrees of freedom of the scatter; infinite of what was stated. Of few places one may be unlike the next."""
+    if not core.estimated:
+        return math.inf
+    if between is None or between.places > FEW_PLACES:
+        return core.degrees_of_freedom
+    return min(core.degrees_of_freedom, between.places)
 
 
 def _ends(group: Readings) -> int:

@@ -98,7 +98,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     def noise(self) -> ReadingNoise:
         """How its readings scatter: as the study stated it, and as the residuals show it."""
         shown = self.fit.reading_scatter
-        return noise_of(self.provenance.get("noise"), asdict(shown) if shown else None, self.arm, Path("result"))
+        stated, freedom = self.provenance.get("noise"), self.fit.degrees_of_freedom
+        return noise_of(stated, asdict(shown) if shown else None, self.arm, Path("result"), freedom)
 
     def its_study(self) -> Study:
         """What it was made of. Raises UlnaInputError of a result that was read from a file."""

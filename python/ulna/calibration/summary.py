@@ -28,10 +28,14 @@ class Parameter:
     start: float
     value: float
     u: float | None
-    """Standard uncertainty; None where held, not determined, or without degrees of freedom to estimate it from."""
+    """Standard uncertainty; None where held, not determined, or where nothing tells it."""
     status: Status
     prior: dict[str, float] | None = None
     """What was known of it before: value and u, where the fit used it."""
+
+
+FEW_PLACES = 3
+"""So few show neither how an arm errs in another one, nor how readings scatter there."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +51,17 @@ class ReadingScatter:
     """Where they scattered more: the standard deviation per coordinate, beside the stated noise, that the model does
     not explain."""
     degrees_of_freedom: float | None = None
-    """Of these figures; None where the stated noise stands."""
+    """Of these figures, and of the parameters' uncertainties; None where the stated noise stands."""
     places: int | None = None
     """Standings of artefacts of which each was left out to see how the arm errs elsewhere; None where there is one."""
     place_factor: float | None = None
     """By what errors in a place left out exceed what the scatter within places makes of them: parameters' uncertainties
     are multiplied by it. 1 where chance explains it."""
-    parameter_degrees_of_freedom: float | None = None
-    """Of the parameters' uncertainties; None where all that they rest on was stated."""
+
+    @property
+    def few_places(self) -> bool:
+        """Whether k says that there are few: where residuals had a say in what is stated."""
+        return self.degrees_of_freedom is not None and self.places is not None and self.places <= FEW_PLACES
 
 
 @dataclass(frozen=True)

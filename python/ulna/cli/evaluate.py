@@ -39,25 +39,25 @@ def evaluate(
     from ulna.calibration.evaluate import FILES
     from ulna.calibration.evaluate import evaluate as run_evaluate
     from ulna.cli import output
-    from ulna.cli.printed.evaluation import evaluation_report
+    from ulna.cli.printed.evaluation import evaluation_report, were_fitted
     from ulna.formats.output import check_output, refuse_inputs
     from ulna.study.file import rows_to_judge
     from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)
-    judged = Arm.load(arm)
+    Arm.load(arm)  # what is wrong with it is said before the study is read
     wanted: Any = rows or rows_to_judge(study)
     loaded = Study.load(study, wanted)
     if out is not None:
         refuse_inputs((out / name for name in FILES), [arm, *(file.path for file in loaded.files)])
     with output.progress_bar() as progress:
-        evaluation = run_evaluate(judged, loaded, progress)
+        evaluation = run_evaluate(arm, loaded, progress)
     if out is not None:
         evaluation.save(out, force)
     if as_json:
         output.print_json(evaluation.as_dict())
     else:
-        output.print_renderable(*evaluation_report(evaluation))
+        output.print_renderable(*evaluation_report(evaluation, were_fitted(arm, evaluation)))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")

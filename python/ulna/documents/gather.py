@@ -12,6 +12,7 @@ from ulna.documents.content.acceptance import verification
 from ulna.documents.content.artefacts import artefact_rows
 from ulna.documents.content.clouds import clouds
 from ulna.documents.content.content import Content
+from ulna.documents.content.coverage import coverages
 from ulna.documents.content.distribution import samples
 from ulna.documents.content.environment import environment
 from ulna.documents.content.held_out import held_out
@@ -81,6 +82,7 @@ def gather(
         fit=found.fit,
         quality=[*quality_rows("fitted", found.before, found.after), *filter(None, [residual_row(found)]), *rows],
         held_out=said,
+        coverage=coverages(found, source.study, left_out, judged),
         readings=readings,
         samples=samples(found.residuals, found.artefacts),
         clouds=over,
@@ -95,7 +97,7 @@ def gather(
         outliers=found.outliers,
         extras=found.extras,
         chosen=found.chosen,
-        verification=None if tested is None else verification(tested),
+        verification=None if tested is None else verification(tested, None if named is None else named.value.file),
         laboratory=None if named is None else named.value,
         missing={},
         provenance=provenance(

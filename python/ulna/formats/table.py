@@ -13,8 +13,7 @@ from ulna.formats.cells import number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, AnyHeader, Layout
 from ulna.formats.no_table import is_prose, prose, refuse_foreign
-from ulna.formats.tables.marks import is_text
-from ulna.formats.tables.registry import WHAT, open_table
+from ulna.formats.tables.registry import WHAT, open_table, taken_for_text
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
 
@@ -37,7 +36,7 @@ def read_header(
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     refuse_foreign(path, start, what)
     names = {*(known or ()), *layout.columns.values()}
-    words = layout.header is True and is_text(start) and is_prose(start, names)
+    words = layout.header is True and taken_for_text(start) and is_prose(start, names)
     try:
         header = open_table(path, start, what, layout)
     except UlnaInputError:

@@ -28,6 +28,18 @@ def placed(reference_mm: F64, measured_mm: F64, code: I64) -> F64:
     return found
 
 
+def fitted_motion(tips: F64, at: F64) -> tuple[F64, F64]:
+    """Where features (N, 3) stand that fit tips best, and an orthonormal basis (3N, k) of how they could have moved."""
+    stood = placed(at, tips, np.zeros(len(at), dtype=np.int64))
+    lever = stood - stood.mean(axis=0)
+    by_turn = np.stack([np.cross(axis, lever) for axis in np.eye(3)], axis=2)
+    by_shift = np.tile(np.eye(3), (len(at), 1, 1))
+    size = float(np.abs(lever).max()) or 1.0
+    columns = np.concatenate([by_shift, by_turn / size], axis=2).reshape(3 * len(at), 6)
+    basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return stood, basis[:, sizes > 1e-9 * sizes[0]]
+
+
 def turned(own: F64, placed_mm: F64, directions: F64) -> F64:
     """(K, 3) directions in the frame of (K, 3) points → (S, K, 3) where the points are (S, K, 3)."""
     middle = own - own.mean(axis=0)

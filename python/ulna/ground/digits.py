@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from decimal import ROUND_HALF_EVEN, Context, Decimal
+from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 
 _MOST_DECIMALS = {"mm": 6, "rad": 9, "1": 9}
 _PLAIN_DECIMALS = {"mm": 4, "rad": 6, "1": 6}
@@ -49,6 +49,13 @@ def plain_uncertainty(u: float | None, unit: str) -> str:
     return fixed(u, decimals(u, unit))
 
 
+def two_digits_up(value: float) -> float:
+    """The least number of two significant digits that is not below a value > 0 (or 0); 0.00231 is 0.0024. What lies
+    beyond the twelfth digit is taken for the rounding of a sum."""
+    exact = Decimal(f"{value:.12g}")
+    return 0.0 if exact == 0 else float(exact.quantize(Decimal(1).scaleb(exact.adjusted() - 1), ROUND_CEILING))
+
+
 def _power(value: float) -> int:
     """Of ten, of the first digit when two are shown: 0.0996 is 0.10."""
     return int(f"{value:.1e}".split("e")[1])
@@ -57,6 +64,19 @@ def _power(value: float) -> int:
 def figure_mm(value: float) -> str:
     """A figure in mm to 0.1 µm; what is smaller than that in powers of ten."""
     return small(value, 2) if 0.0 < abs(value) < 5e-5 else fixed(value, 4)
+
+
+def percent(share: float) -> str:
+    """A probability in percent, with two digits of what it lacks to 0 or to 100; at most a millionth is not told."""
+    tail = min(share, 1.0 - share)
+    if tail < 1e-6:
+        return "< 0.0001" if share < 0.5 else "> 99.9999"
+    return fixed(100.0 * share, max(1 - _power(100.0 * tail), 0))
+
+
+def degrees_of_freedom(value: float) -> str:
+    """A number that need not be whole: 76, 44.3; below one with two digits."""
+    return f"{value:.2g}" if value < 1.0 else f"{value:.1f}".removesuffix(".0")
 
 
 def small(value: float, digits: int) -> str:

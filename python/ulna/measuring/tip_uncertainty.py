@@ -15,7 +15,8 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import NOTHING, Conditions, some_of
-from ulna.arm.directions import steps, worth_naming
+from ulna.arm.directions import worth_naming
+from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import UNKNOWN, ReadingNoise
 from ulna.ground.arrays import F64
 from ulna.work.cores import available_cores
@@ -30,6 +31,11 @@ WHOLE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
 _BLOCK_ROWS = 16384
 """Rows that one thread takes at a time."""
 
+WITHOUT_NOISE = (
+    "How its readings scatter is not in the uncertainties: nothing is known of it. An arm alone does not bring it: "
+    "give the result of its calibration, or state encoder_u_rad."
+)
+
 
 class TipUncertainty:
     """Standard uncertainties of tip coordinates of a calibrated arm; collects notes on what it cannot say."""
@@ -40,16 +46,12 @@ class TipUncertainty:
         self._core = arm.core
         self._probe_names = list(arm.probes)
         self._covariances = [_covariance(arm, name, noise.encoder_rad) for name in arm.probes]
-        self._own_mm2, self._moves_mm = noise.variance_mm2, noise.moves_mm
-        self._estimated = bool(np.isfinite(arm.uncertainty.matrix).all())
+        self._own_mm2, self._moves_mm, self._noise_known = noise.variance_mm2, noise.moves_mm, noise.known
+        self._unknown = arm.uncertainty.why_none
         self._lost = [direction for direction in arm.uncertainty.lost if not direction.get("frame", False)]
-        index = {name: k for k, name in enumerate(arm.parameter_names)}
-        self._lost_columns = np.array(sorted({index[n] for d in self._lost for n in d["combination"]}), dtype=np.int64)
-        self._directions = np.zeros((len(self._lost), len(self._lost_columns)))
-        for row, direction in enumerate(self._lost):
-            for name, weight in direction["combination"].items():
-                self._directions[row, np.searchsorted(self._lost_columns, index[name])] = weight
-            self._directions[row] /= max(steps(direction["combination"]).values())
+        directions = lost_steps(arm)
+        self._lost_columns = np.flatnonzero(directions.any(axis=0))
+        self._directions = np.ascontiguousarray(directions[:, self._lost_columns])
         self._told: dict[tuple[int, int], None] = {}
         self._pool = ThreadPoolExecutor(available_cores())
 
@@ -63,7 +65,7 @@ class TipUncertainty:
 
         NaN where the tip depends on what was not determined. conditions: as `Arm.conditions`.
         """
-        if not self._estimated:
+        if self._unknown is not None:
             return np.full((len(q_rad), 6), np.nan)
 
         def block(start: int) -> F64:
@@ -97,12 +99,10 @@ class TipUncertainty:
     @property
     def notes(self) -> list[str]:
         """What was left empty, why, and what to do about it."""
-        if not self._estimated:
-            return [
-                "u_x, u_y, u_z are left empty: the calibration had no degrees of freedom to estimate uncertainties "
-                "from. Calibrate with more readings, or state the noise in the study."
-            ]
-        return [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
+        if self._unknown is not None:
+            return [f"u_x, u_y, u_z are left empty: {self._unknown.because}. {self._unknown.remedy}"]
+        lost = [_note(self._lost[row], self._probe_names[probe]) for row, probe in self._told]
+        return lost if self._noise_known else [WITHOUT_NOISE, *lost]
 
 
 def _covariance(arm: Arm, probe: str, encoder_u_rad: F64 | None) -> F64:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.covariance import ParameterCovariance
+from ulna.arm.covariance import ParameterCovariance, root_of
 from ulna.arm.directions import worth_naming
 from ulna.calibration.recalibrations import recalibrated
 from ulna.ground.arrays import F64, Progress
@@ -181,7 +181,7 @@ def assess(
         good = agrees(y, k * u, trial, task.digits)[0] if trial is not None and trial.settled else None
         values.append(Value(name, unit, y, u, k * u, k, budget, trial, good, []))
     source = "performance" if arms is not None else "covariance" if study is None else "recalibrations"
-    point = task.touched.kind == "point" and all(determined) and math.isinf(task.noise.parameter_freedom)
+    point = task.touched.kind == "point" and all(determined) and math.isinf(task.noise.degrees_of_freedom)
     return Assessment(
         kind=task.touched.kind,
         probe=task.probe,
@@ -194,7 +194,7 @@ def assess(
         arms=None if arms is None else arms.shares,
         left_out=[
             *([] if arms is None else arms.assumed),
-            *left_out(arm, task.noise, task.u_temperature_k, found.exact),
+            *left_out(arm, task.noise, task.u_temperature_k, found.exact, task.touched.measurand.left_out),
         ],
         seed=seed,
         most_trials=most_trials,
@@ -208,23 +208,20 @@ def check_known(arm: Arm) -> ParameterCovariance:
             f"arm '{arm.name}': no uncertainty is known of it; expected the result.json of a calibration, not an arm "
             "file."
         )
-    if not np.isfinite(arm.uncertainty.matrix).all():
-        raise UlnaInputError(
-            f"arm '{arm.name}': its calibration had no degrees of freedom to estimate uncertainties from. Calibrate "
-            "with more readings, or state the noise in the study."
-        )
+    unknown = arm.uncertainty.why_none
+    if unknown is not None:
+        raise UlnaInputError(f"arm '{arm.name}': no uncertainty is known of it: {unknown.because}. {unknown.remedy}")
     return arm.uncertainty
 
 
 def _degrees_of_freedom(budget: dict[str, float], task: Task) -> float:
     """Effective ones of a value: what the calibration estimated, beside what was stated."""
     noise = task.noise
-    of = {"parameters": noise.parameter_freedom, "unexplained": noise.degrees_of_freedom}
-    of |= {"touch": noise.degrees_of_freedom} if noise.estimated else {}
-    # what rests on one estimate is one contribution: its parts grow and shrink together
+    # what residuals showed is one estimate, and so one contribution: its parts grow and shrink together
+    shown = {"parameters", "unexplained"} | ({"touch"} if noise.estimated else set())
     together: dict[float, float] = {}
     for source, u in budget.items():
-        freedom = of.get(source, math.inf)
+        freedom = noise.degrees_of_freedom if source in shown else math.inf
         together[freedom] = math.hypot(together.get(freedom, 0.0), u)
     return effective_degrees_of_freedom(np.array(list(together.values())), np.array(list(together)))
 
@@ -252,17 +249,12 @@ def _from_covariance(arm: Arm, task: Task, seed: int) -> Sets:
     """Normal; where the covariance was scaled by the calibration's own scatter, multivariate t (JCGM 101 6.4.9)."""
     known = arm.uncertainty
     assert known is not None
-    covariance = known.over(arm.parameter_names)
-    # a covariance is singular along what is held or open: its root by eigenvectors, of what is scaled alike
-    scale = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    scale[scale == 0.0] = 1.0
-    sizes, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
-    root = scale[:, None] * vectors * np.sqrt(np.maximum(sizes, 0.0))
+    root = root_of(known.over(arm.parameter_names))
     mean = arm.parameters
 
     def sets(first: int, count: int) -> F64:
         off: F64 = in_blocks(first, count, seed, 2, mean.shape) @ root.T
-        return mean + off * task.inflated(task.noise.parameter_freedom, first, count, seed)[:, None]
+        return mean + off * task.inflated(first, count, seed)[:, None]
 
     return sets
 

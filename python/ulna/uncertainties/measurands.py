@@ -21,6 +21,9 @@ MOST_READINGS = 1000
 """Of one measurement: what a plane or a ball is touched at, not a scan."""
 
 
+FORM = "that noise makes a form larger than it is: the true one may be smaller than all of its interval"
+
+
 @dataclass(frozen=True)
 class Measurand:
     """A kind of thing to measure."""
@@ -31,6 +34,8 @@ class Measurand:
     """Name of each of its values → "mm" or "1"."""
     of: Callable[..., F64]
     """One (T, N, 3) of tip positions for each feature → (T, values)."""
+    left_out: tuple[str, ...] = ()
+    """What its uncertainty never has, in words."""
 
 
 def _point(touches: F64) -> F64:
@@ -73,9 +78,9 @@ MEASURANDS: dict[str, Measurand] = {
     "point": Measurand({"point": 1}, {"x": "mm", "y": "mm", "z": "mm"}, _point),
     "length": Measurand({"A": 1, "B": 1}, {"length": "mm"}, _length),
     "ball": Measurand({"ball": 4}, {"x": "mm", "y": "mm", "z": "mm", "diameter": "mm"}, _ball),
-    "sphericity": Measurand({"ball": 5}, {"form": "mm"}, _sphericity),
+    "sphericity": Measurand({"ball": 5}, {"form": "mm"}, _sphericity, (FORM,)),
     "plane": Measurand({"plane": 3}, {"n_x": "1", "n_y": "1", "n_z": "1", "d": "mm"}, _plane),
-    "flatness": Measurand({"plane": 4}, {"form": "mm"}, _flatness),
+    "flatness": Measurand({"plane": 4}, {"form": "mm"}, _flatness, (FORM,)),
     "distance": Measurand({"plane": 3, "point": 1}, {"distance": "mm"}, _distance),
 }
 

@@ -77,15 +77,16 @@ class Task:
         for k in range(count):
             at = arm.conditions(poses, **self.said(self.u_temperature_k * noise[k, 0, -1]))
             tips[k] = core.with_parameters(parameters[k]).tip(q_rad[k], probe, **at)
-        more = self.inflated(self.noise.degrees_of_freedom, first, count, seed)
+        more = self.inflated(first, count, seed)
         own_mm = np.sqrt(self.noise.estimated_mm2 * more**2 + self.noise.stated_mm2)
         tips += own_mm[:, None, None] * noise[:, :, arm.n : arm.n + 3]
         return self.values(arm, tips)
 
-    def inflated(self, freedom: float, first: int, count: int, seed: int) -> F64:
+    def inflated(self, first: int, count: int, seed: int) -> F64:
         """(count,) by how much what the calibration estimated from its residuals is larger in each trial, √(ν / χ²_ν):
-        with it normal numbers become Student's t (JCGM 101 6.4.9); of parameters and touches alike where ν is the same,
-        for then it is one estimate."""
+        with it normal numbers become Student's t (JCGM 101 6.4.9), of parameters and touches alike, for it is one
+        estimate."""
+        freedom = self.noise.degrees_of_freedom
         if math.isinf(freedom):
             return np.ones(count)
         found: F64 = np.sqrt(freedom / chi_squared_in_blocks(first, count, seed, 3, freedom))

@@ -10,7 +10,8 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import TEMPERATURE
-from ulna.arm.directions import drawn, steps
+from ulna.arm.directions import drawn
+from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.arm.stated import Box
 from ulna.ground.arrays import F64, Progress
@@ -174,11 +175,7 @@ class Account:
         self._covariance = known.over(arm.parameter_names)
         names = arm.parameter_names
         self._lost = [number for number, direction in enumerate(known.lost) if not direction.get("frame", False)]
-        self._directions = np.zeros((len(self._lost), len(names)))
-        for row, number in enumerate(self._lost):
-            weights = known.lost[number]["combination"]
-            for name, weight in weights.items():
-                self._directions[row, names.index(name)] = weight / max(steps(weights).values())
+        self._directions = lost_steps(arm)
         self._held = [k for k, name in enumerate(names) if name not in known.names]
         self._drawn = np.array([drawn(names[k]) for k in self._held])
         self._matters = np.zeros(len(self._held), dtype=bool)
@@ -208,15 +205,15 @@ class Account:
             ends = self._arm.tip(flat, self._task.probe, self._task.temperature_c).reshape(-1, 2, 3)
             along = ends[:, 1] - ends[:, 0]
             along = along / np.linalg.norm(along, axis=1, keepdims=True)
-            parameters, estimated, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
-            variance = (parameters + estimated + others)[:, 0]
+            shown, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
+            variance = (shown + others)[:, 0]
             us.append(np.sqrt(variance))
-            expanded.append(us[-1] * self._k(parameters[:, 0], estimated[:, 0], variance))
+            expanded.append(us[-1] * self._k(shown[:, 0], variance))
         return np.concatenate(us), np.concatenate(expanded)
 
-    def _variances(self, q_rad: F64, by_tip: F64) -> tuple[F64, F64, F64]:
+    def _variances(self, q_rad: F64, by_tip: F64) -> tuple[F64, F64]:
         """(M K, n) poses, K to a value, and (M, values, K, 3) derivatives of the values by the tips: variances
-        (M, values) from the parameters (NaN where they are open), from what residuals showed of touches, from the
+        (M, values) from the parameters (NaN where they are open) with what residuals showed of touches, and from the
         rest."""
         arm, task = self._arm, self._task
         count, values, each, _ = by_tip.shape
@@ -235,26 +232,22 @@ class Account:
             turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), **at).reshape(count, each, 3, -1)
             others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.noise.encoder_rad) ** 2).sum(axis=(2, 3))
         by_touch = (by_tip**2).sum(axis=(2, 3))
-        estimated = task.noise.estimated_mm2 * by_touch
+        shown = parameters + task.noise.estimated_mm2 * by_touch
         others += task.noise.stated_mm2 * by_touch
         if task.u_temperature_k and task.temperature_c is not None:
             warm, cold = (arm.tip(q_rad, task.probe, task.temperature_c + step) for step in (STEP_K, -STEP_K))
             by_kelvin = ((warm - cold) / (2.0 * STEP_K)).reshape(count, each, 3)
             others += (np.einsum("mvkj,mkj->mv", by_tip, by_kelvin) * task.u_temperature_k) ** 2
-        return parameters, estimated, others
+        return shown, others
 
-    def _k(self, parameters: F64, estimated: F64, variance: F64) -> F64:
+    def _k(self, shown: F64, variance: F64) -> F64:
         """(M,) coverage factors: Student's where the calibration estimated its noise (GUM G.4.1), else normal."""
         upper = 0.5 * (1.0 + self._task.p)
-        noise = self._task.noise
-        if math.isinf(noise.parameter_freedom) and math.isinf(noise.degrees_of_freedom):
+        freedom = self._task.noise.degrees_of_freedom
+        if math.isinf(freedom):
             return np.full(len(variance), normal(upper))
         with np.errstate(divide="ignore", invalid="ignore"):
-            if noise.parameter_freedom == noise.degrees_of_freedom:  # one estimate
-                below = (parameters + estimated) ** 2 / noise.degrees_of_freedom
-            else:
-                below = parameters**2 / noise.parameter_freedom + estimated**2 / noise.degrees_of_freedom
-            effective = variance**2 / below
+            effective = freedom * (variance / shown) ** 2
         k: F64 = np.full(len(variance), normal(upper))
         some = np.isfinite(effective)
         k[some] = student(effective[some], upper)

@@ -1,7 +1,7 @@
 """When a test value passes, by ISO 14253-1: a guard band g about the limit. Lengths mm.
 
 pass where |value| ≤ limit - g, fail where |value| > limit + g, else undecided; u is the uncertainty of the test value,
-not of the arm.
+not of the arm. In the words of JCGM 106:2012, 8.3, and ILAC-G8:09/2019 the band is w = r U.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from ulna.verification.limits import DecisionTable, Rule
+from ulna.verification.limits import Rule
 
 Verdict = Literal["pass", "fail", "undecided"]
 
@@ -27,19 +27,24 @@ class DecisionRule:
     rule: Rule
     k: float
     p: float
+    r: float | None = None
+    """Of the rule "rU": the guard band as a part of U."""
 
-    @classmethod
-    def of(cls, table: DecisionTable, rule: Rule | None = None) -> DecisionRule:
-        """As a profile says, or with another rule."""
-        return cls(rule or table.rule, table.k, table.p)
+    @property
+    def part_of_expanded(self) -> float:
+        """The r of w = r U."""
+        parts: dict[Rule, float] = {"1.65u": FACTOR_2017 / self.k, "U": 1.0, "rU": self.r or 0.0, "simple": 0.0}
+        return parts[self.rule]
 
     @property
     def text(self) -> str:
         """In words, for reports."""
+        r = f"{self.part_of_expanded:.3g}"
         guard = {
-            "1.65u": f"g = {FACTOR_2017} u (ISO 14253-1:2017, 95 % probability of conformity)",
-            "U": f"g = U = {self.k:g} u (as older editions of ISO 14253-1 have it)",
-            "simple": "g = 0 (simple acceptance, no guard band)",
+            "1.65u": f"g = {FACTOR_2017} u (ISO 14253-1:2017, 95 % probability of conformity; w = r U with r = {r})",
+            "U": f"g = w = U = {self.k:g} u (as older editions of ISO 14253-1 have it)",
+            "rU": f"g = w = r U with r = {r}, U = {self.k:g} u",
+            "simple": "g = w = 0 (simple acceptance, no guard band)",
         }[self.rule]
         return (
             f"Pass where |value| ≤ limit - g, fail where |value| > limit + g, else undecided; {guard}. u is the "
@@ -52,7 +57,7 @@ class DecisionRule:
             return 0.0
         if u_mm is None:
             return None
-        return (FACTOR_2017 if self.rule == "1.65u" else self.k) * u_mm
+        return (FACTOR_2017 if self.rule == "1.65u" else self.part_of_expanded * self.k) * u_mm
 
     def decide(self, value_mm: float, limit_mm: float | None, u_mm: float | None) -> Decided:
         """One value."""
@@ -92,6 +97,14 @@ class Limit:
     def text(self) -> str:
         """As a formula."""
         return f"{self.a_mm:g} mm" if self.b is None else f"{self.a_mm:g} mm + L / {self.b:g}"
+
+
+def severity(verdict: Verdict | None, value_mm: float, limit_mm: float | None) -> tuple[int, float]:
+    """What makes a value the worst of several: a fail before all, then what is nearest to its limit or farthest beyond
+    it; without limits the largest."""
+    size = abs(value_mm)
+    order: dict[Verdict | None, int] = {"fail": 3, "undecided": 2, "pass": 1, None: 0}
+    return order[verdict], size if limit_mm is None else size - limit_mm
 
 
 def worst_verdict(verdicts: list[Verdict | None]) -> Verdict | None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ulna.verification.budget import Budget
-from ulna.verification.decision import Decided, Limit, Verdict, worst_verdict
+from ulna.verification.decision import Decided, Limit, Verdict, severity, worst_verdict
 from ulna.verification.figures.figure import Definition
+from ulna.verification.risk import Decision, Process, Risk, risk_of
 from ulna.verification.tables import State
 
 
@@ -49,6 +50,8 @@ class Judged:
     single: Single
     limit_mm: float | None
     decided: Decided
+    conformity: float | None
+    """Probability that the true value keeps the limit; None where there is no limit or no uncertainty."""
 
 
 @dataclass(frozen=True)
@@ -60,15 +63,15 @@ class FigureResult:
     values: list[Judged]
     k: float
     p: float
+    process: Process | None = None
+    """What is made, where it was stated."""
 
     @property
     def worst(self) -> Judged:
         """The value that decides: a fail before all, then what is nearest to its limit or farthest beyond it."""
-        order = {"fail": 3, "undecided": 2, "pass": 1, None: 0}
 
         def rank(judged: Judged) -> tuple[int, float]:
-            size = abs(judged.single.value_mm)
-            return order[judged.decided.verdict], size if judged.limit_mm is None else size - judged.limit_mm
+            return severity(judged.decided.verdict, judged.single.value_mm, judged.limit_mm)
 
         return max(self.values, key=rank)
 
@@ -76,6 +79,16 @@ class FigureResult:
     def verdict(self) -> Verdict | None:
         """Of the worst."""
         return self.worst.decided.verdict
+
+    @property
+    def risk(self) -> Risk | None:
+        """Of the decision on the worst value; None where there is no limit or no uncertainty."""
+        worst = self.worst
+        u_mm, limit_mm, guard_mm = worst.single.budget.u_mm, worst.limit_mm, worst.decided.guard_mm
+        if u_mm is None or limit_mm is None or guard_mm is None:
+            return None
+        decision = Decision(worst.single.value_mm, u_mm, limit_mm, guard_mm, worst.decided.verdict)
+        return risk_of(decision, self.definition.signed, self.process)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,10 @@ from ulna.verification.result_file import (
     ContributorTable,
     EnvironmentTable,
     FigureTable,
+    GlobalRiskTable,
+    ProcessTable,
     ProvenanceTable,
+    RiskTable,
     SourceTable,
     StandingTable,
     StateTable,
@@ -27,6 +30,7 @@ from ulna.verification.result_file import (
     ValueTable,
     VerificationFile,
 )
+from ulna.verification.risk import Risk
 
 
 def verification_file(
@@ -52,7 +56,8 @@ def verification_file(
             path=str(profile.path),
             sha256=profile.sha256,
         ),
-        decision=UsedDecision(rule=rule.rule, text=rule.text, k=rule.k, p=rule.p),
+        decision=UsedDecision(rule=rule.rule, text=rule.text, k=rule.k, p=rule.p, r=rule.part_of_expanded),
+        scanner=plan.file.scanner,
         environment=EnvironmentTable(
             temperature=None if temperature is None else TemperatureTable(value=temperature.value, u=temperature.u),
             fixture=None if fixture_mm is None else StandingTable(u=fixture_mm),
@@ -125,9 +130,33 @@ def _figure(found: FigureResult) -> FigureTable:
         guard=worst.decided.guard_mm,
         verdict=found.verdict,
         why=worst.decided.why,
+        risk=None if found.risk is None else risk_table(found.risk),
         budget=[ContributorTable(name=each.name, u=each.u_mm, formula=each.formula) for each in budget.contributors],
         left_out=budget.left_out,
         individual=[_value(judged) for judged in found.values],
+    )
+
+
+def risk_table(found: Risk) -> RiskTable:
+    """What a decision risks."""
+    made, of_all = found.process, found.of_all
+    shares = None
+    if made is not None and of_all is not None:
+        process = ProcessTable(mean=made.mean, deviation=made.deviation, distribution=made.distribution)
+        shares = GlobalRiskTable(
+            process=process,
+            consumer=of_all.consumer,
+            producer=of_all.producer,
+            withheld=of_all.withheld,
+            undecided=of_all.undecided,
+        )
+    return RiskTable(
+        sides=found.sides,
+        conformity=found.conformity,
+        specific=found.specific,
+        consumer_at_most=found.consumer_at_most,
+        producer_at_most=found.producer_at_most,
+        of_all=shares,
     )
 
 
@@ -144,5 +173,6 @@ def _value(judged: Judged) -> ValueTable:
             "u": single.budget.u_mm,
             "guard": judged.decided.guard_mm,
             "verdict": judged.decided.verdict,
+            "conformity": judged.conformity,
         }
     )

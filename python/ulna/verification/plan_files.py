@@ -59,6 +59,14 @@ def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) ->
             grows = isinstance(kind.limits.get(figure.key), Mapping)
             example = "{ a = 0.030, b = 40000 }     # a + L / b" if grows else "0.030"
             lines.append(_line(toml_key(figure.key), filled.mpe.get(figure.key), example))
+    lines += [
+        "",
+        '# rule = "rU"       # above the tables: a decision rule in place of the profile\'s, with r = 0.8',
+        '# scanner = "…"     # above the tables: what the arm carries beside its probe; it is not tested',
+        "# [process.KEY]     # what is made, by the name of a figure: global risks of the decisions",
+        "# mean = 0.0",
+        "# deviation = 0.010",
+    ]
     for artefact in artefacts_of(profile.file):
         known = filled.artefacts.get(artefact.name, {})
         keys = artefact.keys(filled.range_mm)

@@ -13,8 +13,10 @@ from pydantic import BaseModel, ConfigDict
 from ulna.formats.models import fill
 from ulna.formats.numbers import Amount
 from ulna.formats.toml import check_format, read_json
+from ulna.verification.conformity import Distribution
 from ulna.verification.decision import Verdict
 from ulna.verification.limits import Rule
+from ulna.verification.risk import Sides
 from ulna.verification.tables import State
 
 FORMAT: Literal["ulna-verification/1"] = "ulna-verification/1"
@@ -45,6 +47,8 @@ class ValueTable(Written):
     guard: float | None
     verdict: Verdict | None
     """null where nothing can be said."""
+    conformity: float | None = None
+    """Probability that the true value keeps the limit; null where there is no limit or no uncertainty."""
 
 
 class ContributorTable(Written):
@@ -60,6 +64,45 @@ class TermsTable(Written):
 
     a: float
     b: float | None
+
+
+class ProcessTable(Written):
+    """What is made, as the verify file states it."""
+
+    mean: float
+    deviation: float
+    """Standard deviation."""
+    distribution: Distribution
+
+
+class GlobalRiskTable(Written):
+    """Shares of all that are made and measured so."""
+
+    process: ProcessTable
+    consumer: float
+    """Passes and does not conform."""
+    producer: float
+    """Fails and conforms."""
+    withheld: float
+    """Does not pass and conforms."""
+    undecided: float
+
+
+class RiskTable(Written):
+    """What the decision on a figure's worst value risks, after JCGM 106:2012."""
+
+    sides: Sides
+    """Whether the limit is one of the size (two-sided) or, of what cannot be negative, from above alone."""
+    conformity: float
+    """Probability that the true value keeps the limit."""
+    specific: float | None
+    """Risk that this verdict is wrong; null where nothing was decided."""
+    consumer_at_most: float | None
+    """Specific risk of the consumer of a value that only just passes; null where none can."""
+    producer_at_most: float
+    """Specific risk of the producer of a value that only just fails."""
+    of_all: GlobalRiskTable | None
+    """Global risks; null where it was not stated what is made."""
 
 
 class FigureTable(Written):
@@ -87,6 +130,8 @@ class FigureTable(Written):
     verdict: Verdict | None
     why: str | None
     """Why there is no verdict."""
+    risk: RiskTable | None = None
+    """null where there is no limit or no uncertainty."""
     budget: list[ContributorTable]
     left_out: list[str]
     """What the uncertainty does not hold."""
@@ -132,6 +177,8 @@ class UsedDecision(Written):
     text: str
     k: float
     p: float
+    r: float | None = None
+    """The guard band as a part of U: w = r U."""
 
 
 class TemperatureTable(Written):
@@ -203,6 +250,8 @@ class VerificationFile(Written):
     """The worst of all states."""
     profile: UsedProfile
     decision: UsedDecision
+    scanner: str | None = None
+    """What the arm carries beside its probe; it was not tested."""
     environment: EnvironmentTable
     artefacts: list[dict[str, Any]]
     """name, then the keys of a verify file's table of it."""

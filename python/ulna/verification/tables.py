@@ -11,7 +11,7 @@ from ulna.formats.models import Strict
 from ulna.formats.numbers import Amount, Positive
 from ulna.formats.units import Units
 from ulna.verification.certified import AnyArtefact
-from ulna.verification.limits import LimitValue, Rule
+from ulna.verification.limits import LimitValue, ProcessTable, Rule
 
 State = Literal["as-found", "as-left"]
 STATES: tuple[State, ...] = ("as-found", "as-left")
@@ -72,8 +72,14 @@ class VerifyFile(Strict):
     """Diameter of the measuring range."""
     rule: Rule | None = None
     """The decision rule, in place of the profile's."""
+    r: Positive | None = None
+    """Of the rule "rU": the guard band as a part of U."""
     mpe: dict[str, LimitValue] = Field(default_factory=dict)
     """Maximum permissible errors, by the short name of a figure; a figure without one has no verdict."""
+    process: dict[str, ProcessTable] = Field(default_factory=dict)
+    """What is made, by the short name of a figure: without it there is no global risk of the rule."""
+    scanner: str | None = None
+    """What the arm carries beside its probe, such as a laser line scanner: reports say that it was not tested."""
     artefact: dict[str, AnyArtefact] = Field(default_factory=dict)
     """By name."""
     temperature: VerifyTemperature | None = None

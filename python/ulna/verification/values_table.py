@@ -30,6 +30,7 @@ def values_table(states: list[StateResult]) -> pl.DataFrame:
                             "u_mm": single.budget.u_mm,
                             "guard_mm": judged.decided.guard_mm,
                             "verdict": judged.decided.verdict or "",
+                            "conformity": judged.conformity,
                         }
                     )
     return pl.DataFrame(rows, infer_schema_length=None)

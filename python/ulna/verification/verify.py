@@ -16,12 +16,14 @@ from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.ground.extras import need
 from ulna.ground.shown import About, Shown, Table
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
+from ulna.verification.figures.figure import Definition
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.limits import LimitTable, LimitValue
 from ulna.verification.outcome import FigureResult, Judged, StateResult, TestResult
 from ulna.verification.outcome_tables import verification_file
 from ulna.verification.result_file import VerificationFile
+from ulna.verification.risk import Process, conformity_of
 from ulna.verification.tables import STATES, State
 from ulna.verification.touches import Touches, joined
 
@@ -128,19 +130,24 @@ def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | No
     stated = load_verify(Path(plan), arm)
     for remark in stated.warnings:
         warnings.warn(remark, InputWarning, stacklevel=2)
-    rule = DecisionRule.of(stated.profile.file.decision, stated.file.rule)
-    limits = _limits(stated)
+    rule, limits = _rule(stated), _limits(stated)
+    processes = _processes(stated)
     states = [state for state in STATES if state in stated.touches]
     found = []
     for number, state in enumerate(states):
-        found.append(_state(state, joined(stated.touches[state]), stated, rule, limits))
+        found.append(_state(state, joined(stated.touches[state]), stated, rule, limits, processes))
         if progress is not None:
             progress("evaluating", number + 1, len(states))
     return Verification(stated, rule, found, datetime.now().astimezone())
 
 
 def _state(
-    state: State, touches: Touches, plan: VerifyPlan, rule: DecisionRule, limits: dict[str, Limit]
+    state: State,
+    touches: Touches,
+    plan: VerifyPlan,
+    rule: DecisionRule,
+    limits: dict[str, Limit],
+    processes: dict[str, Process],
 ) -> StateResult:
     bench = plan.bench
     parts = {name: own for (name,), own in touches.groups(("test",))}
@@ -158,16 +165,58 @@ def _state(
             values = []
             for single in singles:
                 limit_mm = None if limit is None else limit.at_mm(single.calibrated_mm)
-                values.append(Judged(single, limit_mm, rule.decide(single.value_mm, limit_mm, single.budget.u_mm)))
-            judged.append(FigureResult(definition, limit, values, rule.k, rule.p))
+                u_mm = single.budget.u_mm
+                conformity = conformity_of(single.value_mm, u_mm, limit_mm, definition.signed)
+                values.append(Judged(single, limit_mm, rule.decide(single.value_mm, limit_mm, u_mm), conformity))
+            process = processes.get(definition.key)
+            judged.append(FigureResult(definition, limit, values, rule.k, rule.p, process))
         tests.append(TestResult(name, kind.name, len(parts[name].row), judged, found.departures))
     return StateResult(state, tests, departures)
+
+
+def _rule(plan: VerifyPlan) -> DecisionRule:
+    """As the profile says, or the verify file in its place. Raises UlnaInputError for "rU" without its r."""
+    table, file = plan.profile.file.decision, plan.file
+    own = file.rule is not None
+    rule, r = (file.rule or table.rule), (file.r if file.r is not None else table.r)
+    if rule == "rU" and r is None:
+        path, key = (plan.path, "r") if own else (plan.profile.path, "decision.r")
+        raise UlnaInputError(
+            f"{path}: key '{key}' is missing: the rule is \"rU\", a guard band that is a part r of U; expected r, a "
+            "number above 0. Add it."
+        )
+    if rule != "rU" and file.r is not None:
+        raise UlnaInputError(
+            f'{plan.path}: key \'r\': got {file.r:g}, but the rule is "{rule}"; expected it with rule = "rU" only. '
+            "Remove it, or change the rule."
+        )
+    return DecisionRule(rule, table.k, table.p, r if rule == "rU" else None)
+
+
+def _figures(plan: VerifyPlan) -> dict[str, Definition]:
+    """All that the profile's tests give, by the short name."""
+    tests = plan.profile.file.test.values()
+    return {figure.key: figure for table in tests for figure in kind_of(table.kind).figures(table)}
+
+
+def _processes(plan: VerifyPlan) -> dict[str, Process]:
+    """What is made, by the short name of a figure. Raises UlnaInputError for what cannot be."""
+    known = _figures(plan)
+    found = {}
+    for name, table in plan.file.process.items():
+        where = f"{plan.path}: key 'process.{name}'"
+        if name not in known:
+            raise UlnaInputError(
+                f"{where}: no test of profile '{plan.profile.file.name}' gives it.{nearest(name, known)} Correct it."
+            )
+        found[name] = Process.of(table, plan.file.units.mm, known[name].signed, where)
+    return found
 
 
 def _limits(plan: VerifyPlan) -> dict[str, Limit]:
     """By the short name of a figure. Raises UlnaInputError for names that no test gives."""
     profile = plan.profile.file
-    known = [figure.key for table in profile.test.values() for figure in kind_of(table.kind).figures(table)]
+    known = _figures(plan)
     found: dict[str, Limit] = {}
     unit = 1.0 if profile.unit is None else MM_PER[profile.unit]
     for limits, mm, path, key in (

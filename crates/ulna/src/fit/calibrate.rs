@@ -225,11 +225,13 @@ pub fn fit_from(
     let observations = problem.equations();
     let placement_unknowns = problem.placement_unknowns();
     let stated = problem.noise().is_some();
-    let (shown, standing) = at_minimum(problem, free, &solution, &mut judged, &whitened, monitor)?;
+    let (shown, standing) =
+        at_minimum(problem, free, &solution.parameters, &solution.pins, &mut judged, &whitened, monitor)?;
     let considered = problem.considered_u(free);
     problem.discount(solution.factors.as_deref());
     let (residuals, rms_mm) = problem.unweighted(&solution.parameters);
-    let identifiability = identifiability(problem, &arm, free, &solution.pins, &judged, options.known, shown.variance.sqrt());
+    let identifiability =
+        identifiability(problem, &arm, free, &solution.pins, &judged, options.known, shown.variance.sqrt());
     let clear = free.iter().zip(&identifiability.in_lost).filter(|(_, lost)| !**lost);
     let determined: Vec<usize> = clear.map(|(&j, _)| j).collect();
     let common_factor = common_factor(problem, &start, &solution.parameters, &determined, options.known);

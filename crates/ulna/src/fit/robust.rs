@@ -104,9 +104,12 @@ impl Standing {
             }
         }
         let fitted = Standing::fitted(whitened, degrees_of_freedom);
-        let mean = |of: &dyn Fn(f64) -> f64| slopes.iter().map(|(weight, slope)| weight * of(*slope)).sum::<f64>() / count;
         // c over κ: for next to no parameters the limit
-        let per_fitted = if fitted < FEW { mean(&|slope| slope).recip() } else { shift(fitted, &mean) / fitted };
+        let per_fitted = if fitted < FEW {
+            count / slopes.iter().map(|(weight, slope)| weight * slope).sum::<f64>()
+        } else {
+            shift(fitted, &slopes, count) / fitted
+        };
         squares / count * (1.0 - fitted) * per_fitted.powi(2)
     }
 
@@ -124,13 +127,12 @@ impl Standing {
 
 /// A share of fitted parameters that changes no digit.
 const FEW: f64 = 1e-6;
-/// Where a loss lets go of a residual, ψ' falls below zero, and a residual is no longer one of its reading alone: from here on
-/// it counts as this.
-const LEAST_SLOPE: f64 = 0.1;
 
-/// The c with which `E[1 / (1 + c ψ')]` is what is left beside the fitted share, by halving: it falls as c grows.
-fn shift(fitted: f64, mean: &dyn Fn(&dyn Fn(f64) -> f64) -> f64) -> f64 {
-    let left = |c: f64| mean(&|slope| (1.0 + c * slope).max(LEAST_SLOPE).recip());
+/// The c with which `E[1 / (1 + c ψ')]` is what is left beside the fitted share, by halving: it falls as c grows. Where a loss
+/// lets go of a residual and ψ' is below zero, nothing holds it: as where it is zero.
+/// Slopes with their weights, of which `count` is the sum.
+fn shift(fitted: f64, slopes: &[(f64, f64)], count: f64) -> f64 {
+    let left = |c: f64| slopes.iter().map(|(weight, slope)| weight / (1.0 + c * slope.max(0.0))).sum::<f64>() / count;
     let (mut low, mut high) = (0.0, 1.0);
     while left(high) > 1.0 - fitted && high < MOST_SHIFT {
         high *= 2.0;

@@ -10,11 +10,10 @@ use crate::artefacts::Whitened;
 use crate::error::Result;
 use crate::fit::judged::{Judged, judge};
 use crate::fit::robust::Standing;
-use crate::fit::solve::Solution;
 use crate::monitor::Monitor;
 use crate::problem::Problem;
+use crate::problem::pins::Pin;
 use crate::problem::priors::Prior;
-use crate::simd::{Columns, padded};
 use crate::solver::decomposition::Decomposition;
 use crate::solver::triangle::Triangle;
 use crate::solver::{BLOCK_ROWS, RowBlock, RowSink};
@@ -31,12 +30,18 @@ pub(crate) fn least_scatter(problem: &Problem) -> f64 {
 /// Chi² per degree of freedom beyond this many standard deviations from one contradicts the stated noise: chance does so in
 /// one calibration of a hundred.
 const CONTRADICTS: f64 = 2.576;
+/// Readings that scatter by less than a tenth of the stated noise have none: they were made without, or are copies. They
+/// say nothing of what readings with noise do, for which it was stated.
+const WITHOUT_NOISE: f64 = 1e-2;
 
 /// The variance of a whitened residual: as the residuals show it, but where noise is stated and they do not contradict it,
 /// one.
 pub(crate) fn believed(per_dof: f64, degrees_of_freedom: f64, stated: bool) -> f64 {
     if !stated {
         return per_dof;
+    }
+    if per_dof < WITHOUT_NOISE {
+        return 1.0;
     }
     // the cube root of chi² is nearly normal (Wilson and Hilferty 1931)
     let spread = 2.0 / (9.0 * degrees_of_freedom);
@@ -119,12 +124,13 @@ const MOST_FITTED: f64 = 0.4;
 pub(crate) fn at_minimum(
     problem: &mut Problem,
     free: &[usize],
-    solution: &Solution,
+    parameters: &[f64],
+    pins: &[Pin],
     judged: &mut Judged,
     whitened: &[Whitened],
     monitor: &dyn Monitor,
 ) -> Result<(Shown, Standing)> {
-    let (parameters, stated) = (&solution.parameters, problem.noise().is_some());
+    let stated = problem.noise().is_some();
     let (least, mut unit) = (least_scatter(problem), problem.unit());
     let priors = problem.priors().iter().any(|prior| free.contains(&prior.parameter));
     let known_before = priors || problem.considered_u(free).iter().any(|u| *u > 0.0);
@@ -132,8 +138,14 @@ pub(crate) fn at_minimum(
     let standing = Standing::of(whitened, shown.degrees_of_freedom, least);
     if let (Some(loss), Some(_)) = (problem.loss(), shown.per_dof) {
         let told = Standing::fitted(whitened, shown.degrees_of_freedom) <= MOST_FITTED;
-        let variance = standing.variance(whitened, loss, shown.degrees_of_freedom);
-        shown = Shown { per_dof: Some(variance), variance: if told { variance } else { f64::NAN }, estimated: true, ..shown };
+        let seen = standing.variance(whitened, loss, shown.degrees_of_freedom);
+        let variance = if stated && seen < WITHOUT_NOISE { 1.0 } else { seen };
+        shown = Shown {
+            per_dof: Some(variance),
+            variance: if told { variance } else { f64::NAN },
+            estimated: true,
+            ..shown
+        };
     }
     for _ in 0..ROUNDS {
         let next = shown.variance.sqrt().max(least);
@@ -143,7 +155,7 @@ pub(crate) fn at_minimum(
         unit = next;
         if priors {
             problem.set_unit(unit);
-            *judged = judge(problem, free, &solution.pins, parameters, monitor)?;
+            *judged = judge(problem, free, pins, parameters, monitor)?;
         }
         if problem.loss().is_some() {
             break;
@@ -164,9 +176,8 @@ struct Known {
 impl Known {
     fn of(problem: &Problem, free: &[usize], parameters: &[f64]) -> Known {
         let unknown = |parameter: usize| free.iter().position(|&j| j == parameter);
-        let prior = |prior: &Prior| {
-            Some((unknown(prior.parameter)?, prior.u, parameters[prior.parameter] - prior.value))
-        };
+        let prior =
+            |prior: &Prior| Some((unknown(prior.parameter)?, prior.u, parameters[prior.parameter] - prior.value));
         let considered = problem.considered_u(free).into_iter().enumerate().filter(|(_, u)| *u > 0.0);
         Known {
             priors: problem.priors().iter().filter_map(prior).collect(),
@@ -213,30 +224,16 @@ fn with_considered(considered: &[(usize, f64)], free: usize, judged: &Judged, un
     let rows: Vec<Vec<f64>> = of_readings.chain(of_priors).collect();
     let mut triangle = Triangle::new(unknowns);
     for rows in rows.chunks(BLOCK_ROWS) {
-        triangle.fold(&mut block_of(rows, unknowns));
+        triangle.fold(&mut RowBlock::of_rows(rows, unknowns));
     }
     // what vanished without them has been judged: every other column is there
     let norms = triangle.column_norms();
     let gone = |j: &usize| *j < free && !judged.decomposition.kept.contains(j);
-    let natural_scale: Vec<f64> = (0..unknowns).map(|j| if gone(&j) { f64::MAX } else { norms[j].max(f64::MIN_POSITIVE) }).collect();
+    let natural_scale: Vec<f64> =
+        (0..unknowns).map(|j| if gone(&j) { f64::MAX } else { norms[j].max(f64::MIN_POSITIVE) }).collect();
     let behind = |direction: &Vec<f64>| direction.iter().copied().chain(considered.iter().map(|_| 0.0)).collect();
     let symmetries: Vec<Vec<f64>> = judged.symmetries.iter().map(|(_, direction)| behind(direction)).collect();
     let slices: Vec<&[f64]> = symmetries.iter().map(Vec::as_slice).collect();
     let decomposition = Decomposition::new(&triangle, unknowns, &natural_scale, &slices);
     (triangle, decomposition)
-}
-
-/// Rows of so many unknowns and a residual.
-fn block_of(rows: &[Vec<f64>], unknowns: usize) -> RowBlock {
-    let mut block = RowBlock {
-        columns: Columns::zeros(unknowns + 1, rows.len()),
-        rows: padded(rows.len()),
-        targets: (0..unknowns).map(|c| (c, c)).collect(),
-        residual: unknowns,
-        standing: vec![],
-    };
-    for (k, row) in rows.iter().enumerate() {
-        row.iter().enumerate().for_each(|(column, &value)| block.columns.column_mut(column)[k] = value);
-    }
-    block
 }

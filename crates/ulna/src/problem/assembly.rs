@@ -6,7 +6,6 @@ use super::priors::Prior;
 use crate::artefacts::{At, Buffers, Model, Unknowns, Writer};
 use crate::error::Result;
 use crate::monitor::Monitor;
-use crate::simd::{Columns, PAD, padded};
 use crate::solver::{BLOCK_ROWS, LeastSquares, RowBlock, RowSink};
 
 /// The free parameters of a problem as unknowns of a least-squares problem.
@@ -143,19 +142,15 @@ impl<'a> Assembly<'a> {
     /// `unit (x - value) / u` of each prior, for a sink of so many unknowns.
     fn stream_priors(&self, x: &[f64], jacobian: bool, unknowns: usize, sink: &mut dyn RowSink) {
         for priors in self.priors.chunks(BLOCK_ROWS) {
-            let mut block = RowBlock {
-                columns: Columns::zeros(unknowns + 1, priors.len()),
-                rows: padded(priors.len()),
-                targets: (0..unknowns).map(|c| (c, c)).collect(),
-                residual: unknowns,
-                standing: vec![],
+            let row = |prior: &Prior| {
+                let (mut row, weight) = (vec![0.0; unknowns + 1], self.problem.unit() / prior.u);
+                if let Some(unknown) = self.free.iter().position(|&j| j == prior.parameter) {
+                    row[unknown] = weight;
+                    row[unknowns] = weight * (x[unknown] - prior.value);
+                }
+                row
             };
-            for (row, prior) in priors.iter().enumerate() {
-                let Some(unknown) = self.free.iter().position(|&j| j == prior.parameter) else { continue };
-                let weight = self.problem.unit() / prior.u;
-                block.columns.column_mut(unknown)[row] = weight;
-                block.columns.column_mut(unknowns)[row] = weight * (x[unknown] - prior.value);
-            }
+            let mut block = RowBlock::of_rows(&priors.iter().map(row).collect::<Vec<_>>(), unknowns);
             if !jacobian {
                 block.targets.clear();
             }
@@ -181,8 +176,8 @@ impl LeastSquares for Assembly<'_> {
         self.stream(x, Wanted { jacobian, considered: false, standings: false }, sink)?;
         self.stream_priors(x, jacobian, x.len(), sink);
         for pin in &self.pins {
-            let residual = pin.residual(x);
-            let mut block = single_row(pin.coefficients.iter().chain([&residual]), x.len() + 1);
+            let row = pin.coefficients.iter().copied().chain([pin.residual(x)]).collect();
+            let mut block = RowBlock::of_rows(&[row], x.len());
             if !jacobian {
                 block.targets.clear();
             }
@@ -190,19 +185,4 @@ impl LeastSquares for Assembly<'_> {
         }
         Ok(())
     }
-}
-
-/// A block of one equation, its last column the residual.
-fn single_row<'a>(values: impl Iterator<Item = &'a f64>, columns: usize) -> RowBlock {
-    let mut block = RowBlock {
-        columns: Columns::zeros(columns, 1),
-        rows: PAD,
-        targets: (0..columns - 1).map(|c| (c, c)).collect(),
-        residual: columns - 1,
-        standing: vec![],
-    };
-    for (column, &value) in values.enumerate() {
-        block.columns.column_mut(column)[0] = value;
-    }
-    block
 }

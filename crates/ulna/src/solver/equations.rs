@@ -1,7 +1,7 @@
 //! Equations on their way: blocks of rows, what streams them and what takes them.
 
 use crate::error::Result;
-use crate::simd::Columns;
+use crate::simd::{Columns, padded};
 
 /// Rows in a block.
 pub const BLOCK_ROWS: usize = 256;
@@ -25,6 +25,21 @@ pub struct RowBlock {
 impl RowBlock {
     /// No standing.
     pub const NONE: u32 = u32::MAX;
+
+    /// Few equations in so many unknowns, each of the derivatives and then the residual; no local unknowns.
+    pub fn of_rows(rows: &[Vec<f64>], unknowns: usize) -> RowBlock {
+        let mut block = RowBlock {
+            columns: Columns::zeros(unknowns + 1, rows.len()),
+            rows: padded(rows.len()),
+            targets: (0..unknowns).map(|c| (c, c)).collect(),
+            residual: unknowns,
+            standing: vec![],
+        };
+        for (k, row) in rows.iter().enumerate() {
+            row.iter().enumerate().for_each(|(column, &value)| block.columns.column_mut(column)[k] = value);
+        }
+        block
+    }
 }
 
 /// Takes blocks of equations.

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ulna.arm.frames.rigid import inverse, pose, turn
-from ulna.arm.joint import Joint
+from ulna.arm.joint import Joint, JointModel
 from ulna.arm.probe import Probe
 from ulna.ground.arrays import F64
 
@@ -22,6 +22,10 @@ PARALLEL = 0.05
 
 #: axes closer to parallel than this have no common normal, closer to perpendicular no crossing of a plane
 _NONE = 1e-6
+
+#: an axis nearer to perpendicular than this (cosine of its angle) meets the plane across the one before so far off that
+#: an offset is the better number
+_CROSSING = 0.5
 
 #: axes nearer to each other than this, mm, where they meet the plane have no direction from one to the other
 _NO_LINK_MM = 1e-11
@@ -98,6 +102,8 @@ def hayati_where_parallel(
     """The same arm with Hayati joints where an axis is (nearly) parallel to the next; and which (from 1) became so.
 
     An offset d of such a joint slides along the next axis: into the next joint's d, or from the last one into the tips.
+    One that slides into a Hayati joint, which has none either, slides on; where that joint's next axis is too far from
+    parallel to take it, the joint becomes a DH joint, and counts as changed as well.
     """
     out: list[Joint] = []
     changed: list[int] = []
@@ -105,18 +111,29 @@ def hayati_where_parallel(
     for k, joint in enumerate(joints[:-1], start=1):
         old = t_new_old @ link_at_zero(joint)
         theta0_rad = joint.theta0_rad - math.atan2(t_new_old[1, 0], t_new_old[0, 0])
-        own = replace(joint, theta0_rad=theta0_rad, d_mm=joint.d_mm + float(t_new_old[2, 3]))
-        if abs(math.sin(joint.alpha_rad)) < PARALLEL:
-            if own.d_mm:
-                link = link_between(old[:3, 3], old[:3, 2], like=replace(own, model="hayati"))
-                own = replace(link, sign=own.sign, name=own.name, limits_rad=own.limits_rad)
-                own = replace(own, endless=joint.endless, counts_per_turn=joint.counts_per_turn)
-            own = replace(own, model="hayati")
+        d_mm = without_rounding_mm(joint.d_mm + float(t_new_old[2, 3]))
+        own = replace(joint, theta0_rad=theta0_rad, d_mm=d_mm)
+        t_new_old = np.eye(4)
+        if joint.model == "hayati" or abs(math.sin(joint.alpha_rad)) < PARALLEL:
+            if d_mm:
+                own = _without_offset(own, old)
+                t_new_old = inverse(link_at_zero(own)) @ old
+            else:  # its numbers stay as they are
+                own = replace(own, model="hayati")
         if own.model != joint.model:
             changed.append(k)
-        t_new_old = np.eye(4) if own.model == "dh" else inverse(link_at_zero(own)) @ old
         out.append(own)
     return (*out, joints[-1]), moved(probes, t_new_old), changed
+
+
+def _without_offset(own: Joint, t_next: F64) -> Joint:
+    """A joint to the axis z of (4, 4) `t_next` without an offset, or, where that is far from parallel, a DH joint."""
+    form: JointModel = "hayati" if abs(t_next[2, 2]) > _CROSSING else "dh"
+    link = link_between(t_next[:3, 3], t_next[:3, 2], like=replace(own, model=form))
+    return replace(
+        own, theta0_rad=link.theta0_rad, alpha_rad=link.alpha_rad, a_mm=link.a_mm, d_mm=link.d_mm,
+        beta_rad=link.beta_rad, model=link.model,
+    )  # fmt: skip
 
 
 def moved(probes: Mapping[str, Probe], t: F64) -> dict[str, Probe]:

@@ -25,6 +25,7 @@ from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.hints import what_to_try
 from ulna.cli.printed.identification import cause_in_words, determined_in_words
 from ulna.cli.printed.scale import common_factor
+from ulna.cli.printed.scatter import scatter
 from ulna.cli.printed.signs import signs_in_lines
 from ulna.cli.printed.tables import table
 from ulna.ground.digits import figure_mm, uncertainty
@@ -51,7 +52,7 @@ def _well(result: Result, width: int) -> list[RenderableType]:
     before: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
     before += signs_in_lines(result.fit, width)
     before.append(Text(equations(result.fit)))
-    before += [Text(said) for said in filter(None, [common_factor(result)])]
+    before += [Text(said) for said in filter(None, [scatter(result), common_factor(result)])]
     rms = ["reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm)]
     figures = before_after(
         "Before and after, on the fitted readings",

@@ -17,9 +17,10 @@ from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions
 from ulna.cli.printed.outliers import far_off
 from ulna.cli.printed.scale import common_factor
+from ulna.cli.printed.scatter import scatter
 from ulna.cli.printed.signs import signs_in_full
 from ulna.cli.printed.tables import table
-from ulna.ground.digits import decimals, figure_mm, fixed, plain_uncertainty, quantity, uncertainty
+from ulna.ground.digits import decimals, degrees_of_freedom, figure_mm, fixed, plain_uncertainty, quantity, uncertainty
 
 _ENDINGS = {
     "converged-cost": "Converged: the sum of squares no longer falls",
@@ -40,7 +41,7 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts: list[RenderableType] = [Text(f"{result.arm.name}, {result.arm.n} joints. {ending(result.fit)}")]
     parts += signs_in_full(result.fit)
     parts.append(Text(f"{equations(result.fit)} {determined_in_words(result.identifiability).capitalize()}"))
-    parts += [Text(said) for said in filter(None, [common_factor(result)])]
+    parts += [Text(said) for said in filter(None, [scatter(result), common_factor(result)])]
     rms = ("reading to fit, rms", figure_mm(result.fit.rms_start_mm), figure_mm(result.fit.rms_mm))
     title, without = "Before and after, on the fitted readings", result.without_far_off
     table = before_after(title, result.before, result.after, [rms], without, len(result.outliers))
@@ -77,7 +78,7 @@ def equations(fit: FitSummary) -> str:
     chi2 = "" if fit.chi2_per_dof is None else f", chi² per degree {fit.chi2_per_dof:.3f} (1: the stated noise fits)"
     return (
         f"{fit.readings} readings, {fit.observations} equations{placements}, "
-        f"{fit.degrees_of_freedom} degree{'s' * (fit.degrees_of_freedom != 1)} of freedom{chi2}."
+        f"{degrees_of_freedom(fit.degrees_of_freedom)} degree{'s' * (fit.degrees_of_freedom != 1)} of freedom{chi2}."
         f"{'' if fit.loss == 'none' else f' Readings far off count less (loss: {fit.loss}).'}"
     )
 

@@ -23,9 +23,13 @@ def certificate_report(held: Mapping[str, Any]) -> list[RenderableType]:
     lines.append(f" {of['fitted']} parameters with U = k u, k = {of['k']:.2f}, and their covariance")
     lines.append(f" {of['held']} held, {of['not_determined']} not determined: said so, without U")
     if of["without_uncertainty"]:
-        lines.append(f" {of['without_uncertainty']} fitted without degrees of freedom: said so, without U")
+        lines.append(f" {of['without_uncertainty']} fitted of which no uncertainty can be given: said so, without U")
     for tests in held["tests"]:
         lines.append(f" {len(tests['values'])} test values, {tests['title']}: {tests['conformity'] or 'no limits'}")
+        if tests["lifted"]:
+            lines.append(f"  U lifted to the laboratory's CMC, and decided anew: {', '.join(tests['lifted'])}")
+        if tests["without_cmc"]:
+            lines.append(f"  the laboratory file states no CMC of {', '.join(tests['without_cmc'])}")
     if held["missing"]:
         lines.append("The laboratory file says nothing of:")
         lines += [f" {_MISSING[key]}" for key in held["missing"]]

@@ -10,6 +10,7 @@ from rich.text import Text
 from ulna.arm.directions import sentence
 from ulna.artefacts.quantities import QUANTITIES
 from ulna.calibration.cross_validate import CrossValidation
+from ulna.cli.printed.coverage import coverage_report
 from ulna.cli.printed.figures import MOST_ROWS, before_after
 from ulna.cli.printed.tables import heading, listed, table
 from ulna.ground.digits import figure_mm
@@ -25,7 +26,7 @@ _MOST_FIGURES = 3
 
 
 def cross_validation_report(found: CrossValidation) -> list[RenderableType]:
-    """Per group left out, then over all groups."""
+    """Per group left out, then over all groups, then whether what each fit states holds."""
     present = {name for group in found.groups for name in (*group.before, *group.after)}
     columns = [name for name in _SHOWN if name in present][:_MOST_FIGURES]
     heads = ["left out", "readings"]
@@ -45,6 +46,7 @@ def cross_validation_report(found: CrossValidation) -> list[RenderableType]:
     if len(found.groups) > MOST_ROWS:
         parts.append(Text(f"… and {len(found.groups) - MOST_ROWS} more: -o DIR writes all to cross-validation.json."))
     parts += ["", before_after("Over all groups, on readings not seen", found.before, found.after)]
+    parts += coverage_report(found.coverage)
     return parts + _lost_only_sometimes(found)
 
 

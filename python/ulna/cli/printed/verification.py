@@ -5,8 +5,10 @@ from __future__ import annotations
 from rich.console import RenderableType
 from rich.text import Text
 
+from ulna.cli.printed.risks import risks
 from ulna.cli.printed.tables import heading, listed, table
 from ulna.ground.digits import fixed, uncertainty
+from ulna.verification.not_covered import not_covered
 from ulna.verification.outcome import FigureResult, StateResult
 from ulna.verification.verify import Verification
 
@@ -26,6 +28,7 @@ def verification_report(found: Verification) -> list[RenderableType]:
     heads = ["", *(head for state in states for head in (f"{state}\nµm", "limit\nµm", "verdict")), "u\nµm"]
     parts.append(table("Figures, the worst value of each", heads, rows, left=1))
     parts += _not_passed(found)
+    parts += risks(found)
     formulas = {figure.definition.name: figure for state in found.states for figure in state.figures.values()}
     parts += [
         "",
@@ -43,6 +46,7 @@ def verification_report(found: Verification) -> list[RenderableType]:
     left_out = list(dict.fromkeys(text for figure in formulas.values() for text in figure.worst.single.budget.left_out))
     if left_out:
         parts += ["", heading("Not in the uncertainties"), listed((text,) for text in left_out)]
+    parts += ["", Text(not_covered(found.plan.file.scanner))]
     verdicts = ", ".join(f"{state.state} {_whole(state)}" for state in found.states)
     return [*parts, "", Text(f"On the whole: {verdicts}.", style="bold")]
 

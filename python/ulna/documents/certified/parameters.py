@@ -1,8 +1,8 @@
 """What a certificate states of an arm's parameters: values, expanded uncertainties, the region that holds them all.
 
 Evaluated in the manner of JCGM 100:2008 (GUM) and JCGM 102:2011. k is that of `ulna uncertainty`: of the normal
-distribution where the study stated the noise, of Student's t with the fit's degrees of freedom where the noise was
-estimated from the residuals.
+distribution where the study stated the noise and the residuals do not contradict it, of Student's t with the degrees of
+freedom of what the residuals showed where they had a say.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ulna.arm.unknown import Unknown
 from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.ground.arrays import F64
@@ -30,7 +31,7 @@ class StatedParameters:
     fitted: list[Parameter]
     """Those with an uncertainty."""
     unsure: list[Parameter]
-    """Fitted, but without degrees of freedom to estimate an uncertainty from."""
+    """Fitted, but without an uncertainty."""
     held: list[Parameter]
     lost: list[Parameter]
     """Those that take part in a combination which the readings do not determine."""
@@ -43,7 +44,9 @@ class StatedParameters:
     p: float
     """Coverage probability of both."""
     degrees_of_freedom: float
-    """Infinite where the noise was stated."""
+    """Infinite where all that the uncertainties rest on was stated."""
+    unknown: Unknown | None
+    """Why there are none of `unsure`."""
 
     @property
     def expanded(self) -> list[float]:
@@ -54,7 +57,7 @@ class StatedParameters:
 def stated_parameters(result: Result, p: float = P) -> StatedParameters:
     """What can be stated of a result's parameters with coverage probability p."""
     fitted = [row for row in result.parameters if row.status == "fitted" and row.u is not None]
-    freedom = math.inf if result.provenance.get("noise") else float(result.fit.degrees_of_freedom)
+    freedom = result.noise.degrees_of_freedom
     at = [result.covariance.names.index(row.name) for row in fitted]
     return StatedParameters(
         fitted=fitted,
@@ -66,6 +69,7 @@ def stated_parameters(result: Result, p: float = P) -> StatedParameters:
         k_region=_of_region(p, len(fitted), freedom),
         p=p,
         degrees_of_freedom=freedom,
+        unknown=result.covariance.why_none,
     )
 
 

@@ -42,7 +42,7 @@ def certified_result(path: Path) -> tuple[Calibration, StatedParameters]:
             _damaged(path, f"provenance.files.{number}", "expected texts path and sha256")
     for key in ("readings", "degrees_of_freedom"):
         if not 0 <= getattr(result.fit, key) <= MOST_COUNTED:
-            _damaged(path, f"fit.{key}", f"expected a count, at most {MOST_COUNTED:g}")
+            _damaged(path, f"fit.{key}", f"expected a number from 0 to {MOST_COUNTED:g}")
     known = set(result.covariance.names)
     for row in result.parameters:
         if row.status == "fitted" and row.u is not None and row.name not in known:

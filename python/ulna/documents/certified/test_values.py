@@ -21,8 +21,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from ulna.verification.decision import DecisionRule
+from ulna.verification.lifted import Lifted
+from ulna.verification.result_file import RiskTable
+
 State = Literal["as-found", "as-left"]
-Rule = Literal["1.65u", "U", "simple"]
 Decision = Literal["pass", "fail", "undecided"]
 Conformity = Literal["pass", "conditionalPass", "conditionalFail", "fail", "noPass"]
 
@@ -39,6 +42,8 @@ class SingleValue:
     expanded: float | None
     limit: float | None
     decision: Decision | None
+    probability: float | None = None
+    """That the true value keeps the limit; None where it is not known."""
 
     @property
     def conformity(self) -> Conformity | None:
@@ -75,6 +80,8 @@ class StatedTest:
     """What is not among them."""
     singles: Sequence[SingleValue] = ()
     """In `unit`, with `k` and `p`."""
+    risk: RiskTable | None = None
+    """Of the decision; None where it is not known."""
 
     @property
     def conformity(self) -> Conformity | None:
@@ -101,10 +108,7 @@ class StatedTests:
     """In the manner of which standard."""
     statement: str
     """What the profile says of that."""
-    rule: Rule
-    """The guard band of the decision rule."""
-    k: float
-    """Of the rule "U"."""
+    rule: DecisionRule
     version: str
     """Of the Ulna that computed the values."""
     values: Sequence[StatedTest]
@@ -113,6 +117,14 @@ class StatedTests:
     temperature: Temperature | None = None
     files: Sequence[tuple[str, str]] = ()
     """path and SHA-256 of what the figures come from."""
+    lifted: Sequence[Lifted] = ()
+    """Figures whose U was below the laboratory's CMC."""
+    without: Sequence[str] = ()
+    """Short names of figures of which an accredited laboratory states no CMC."""
+    accredited: bool = False
+    """Whether U has two digits here, and values its place."""
+    scanner: str | None = None
+    """What the arm carries beside its probe, and was not tested."""
 
     @property
     def source(self) -> str:

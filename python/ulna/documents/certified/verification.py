@@ -10,27 +10,38 @@ from typing import NoReturn
 from ulna.calibration.result import Result
 from ulna.documents.certified.source import MOST
 from ulna.documents.certified.test_values import SingleValue, StatedTest, StatedTests, Temperature
-from ulna.documents.laboratory.tables import ItemTable
+from ulna.documents.content.acceptance import scanner_of
+from ulna.documents.laboratory.capability import Stated, stated_by
+from ulna.documents.laboratory.tables import ItemTable, LaboratoryFile
 from ulna.documents.sources.source import Calibration
 from ulna.documents.sources.verification import calibrated_arms, strange_arms
 from ulna.ground.errors import UlnaInputError
+from ulna.verification.lifted import rule_of
 from ulna.verification.result_file import FigureTable, StateTable, ValueTable, VerificationFile, load_verification
 
 #: rounding that is forgiven
 _SLACK = 1e-9
 
 
-def stated_tests(path: Path, calibration: Calibration, item: ItemTable) -> list[StatedTests]:
-    """The tests of one file, as found before as left. Raises UlnaInputError, also where they are of another arm."""
+def stated_tests(path: Path, calibration: Calibration, laboratory: LaboratoryFile) -> list[StatedTests]:
+    """The tests of one file, as found before as left, with no U below the laboratory's CMC. Raises UlnaInputError, also
+    where they are of another arm."""
     file, digest = load_verification(path)
-    _check_arm(file, path, calibration, item)
-    return [_state(file, state, path, digest) for state in file.states]
+    _check_arm(file, path, calibration, laboratory.item)
+    for state in file.states:
+        for test in state.tests:
+            for figure in test.figures:
+                _check(path, figure)
+    stated = stated_by(file, laboratory)
+    scanner = scanner_of(file, laboratory)
+    return [_state(stated, state, path, digest, scanner) for state in stated.file.states]
 
 
-def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -> StatedTests:
+def _state(stated: Stated, state: StateTable, path: Path, digest: str, scanner: str | None) -> StatedTests:
+    file = stated.file
     if not any(test.figures for test in state.tests):
         raise UlnaInputError(f"{path}: state '{state.state}' has no figure; expected one at the least. Verify again.")
-    made, stated = file.provenance, file.environment.temperature
+    made, warm = file.provenance, file.environment.temperature
     own = [each for each in made.files if each.state == state.state]
     used = [(each.path, each.sha256) for each in (made.plan, *made.arms)]
     files = [(path.name, digest), *used, *((each.path, each.sha256) for each in own)]
@@ -39,17 +50,21 @@ def _state(file: VerificationFile, state: StateTable, path: Path, digest: str) -
         state=state.state,
         manner=file.profile.standard,
         statement=file.profile.statement,
-        rule=file.decision.rule,
-        k=file.decision.k,
+        rule=rule_of(file.decision),
         version=made.version,
-        values=[_figure(path, test.name, figure) for test in state.tests for figure in test.figures],
+        values=[_figure(test.name, figure) for test in state.tests for figure in test.figures],
         departures=[*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)],
-        temperature=None if stated is None else Temperature(stated.value, stated.u),
+        temperature=None if warm is None else Temperature(warm.value, warm.u),
         files=files,
+        lifted=[each for each in stated.lifted if each.state == state.state],
+        without=stated.without,
+        accredited=stated.accredited,
+        scanner=scanner,
     )
 
 
-def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
+def _check(path: Path, figure: FigureTable) -> None:
+    """Its numbers bear each other out. Raises UlnaInputError."""
     verdicts: list[FigureTable | ValueTable] = [figure, *figure.individual]
     for each in verdicts:
         _check_verdict(path, figure.name, each)
@@ -63,6 +78,9 @@ def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
         and not math.isclose(figure.expanded, figure.k * figure.u, rel_tol=_SLACK)
     ):
         _damaged(path, figure.name, "expanded is not k times u")
+
+
+def _figure(test: str, figure: FigureTable) -> StatedTest:
     return StatedTest(
         name=figure.name,
         test=test,
@@ -78,13 +96,15 @@ def _figure(path: Path, test: str, figure: FigureTable) -> StatedTest:
         budget=[(part.name, part.u) for part in figure.budget],
         left_out=figure.left_out,
         singles=[_single(value, figure.k) for value in figure.individual],
+        risk=figure.risk,
     )
 
 
 def _single(value: ValueTable, k: float) -> SingleValue:
     labels = (value.artefact, value.position, value.orientation, value.repeat)
     label = "/".join(each for each in labels if each)
-    return SingleValue(label, value.value, None if value.u is None else k * value.u, value.limit, value.verdict)
+    expanded = None if value.u is None else k * value.u
+    return SingleValue(label, value.value, expanded, value.limit, value.verdict, value.conformity)
 
 
 def _check_verdict(path: Path, name: str, each: FigureTable | ValueTable) -> None:

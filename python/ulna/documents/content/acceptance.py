@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ulna.documents.laboratory.capability import stated_by
+from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
 from ulna.ground.arrays import F64
 from ulna.verification.kinds.registry import LENGTHS
+from ulna.verification.lifted import Lifted
 from ulna.verification.result_file import TestedTable, VerificationFile
 
 
@@ -46,17 +49,39 @@ class Verification:
     remarks: list[Said]
     """Where it is not of this result's arm."""
     lengths: list[TestedLengths]
+    lifted: list[Lifted] = field(default_factory=list)
+    """Where U was below the laboratory's CMC."""
+    without: list[str] = field(default_factory=list)
+    """Short names of figures of which an accredited laboratory states no CMC."""
+    scanner: str | None = None
+    """What the arm carries beside its probe."""
 
 
-def verification(taken: Taken[VerificationFile]) -> Verification:
-    """What `ulna verify` found, with its length errors as arrays."""
+def verification(taken: Taken[VerificationFile], laboratory: LaboratoryFile | None = None) -> Verification:
+    """What `ulna verify` found, as the laboratory may state it, with its length errors as arrays."""
+    stated = stated_by(taken.value, laboratory)
     lengths = [
         _lengths(state.state, test)
-        for state in taken.value.states
+        for state in stated.file.states
         for test in state.tests
         if test.kind in LENGTHS and test.figures
     ]
-    return Verification(taken.file.name, taken.file.sha256, taken.value, taken.remarks, lengths)
+    return Verification(
+        taken.file.name,
+        taken.file.sha256,
+        stated.file,
+        taken.remarks,
+        lengths,
+        stated.lifted,
+        stated.without,
+        scanner_of(stated.file, laboratory),
+    )
+
+
+def scanner_of(file: VerificationFile, laboratory: LaboratoryFile | None) -> str | None:
+    """What the arm carries beside its probe, as the laboratory or the verify file says."""
+    named = None if laboratory is None else laboratory.item.scanner
+    return named or file.scanner
 
 
 def _lengths(state: str, test: TestedTable) -> TestedLengths:

@@ -18,6 +18,7 @@ from ulna.calibration.summary import FitSummary
 from ulna.documents.content.acceptance import Verification
 from ulna.documents.content.artefacts import ArtefactRow
 from ulna.documents.content.clouds import Cloud, Quiver
+from ulna.documents.content.coverage import JudgedReadings
 from ulna.documents.content.distribution import Sample
 from ulna.documents.content.environment import Environment
 from ulna.documents.content.parameters import Observability, Parameters
@@ -41,6 +42,8 @@ class Content:
     quality: list[QualityRow]
     held_out: list[Said]
     """What the held-out readings are, or that there are none and what would be needed."""
+    coverage: list[JudgedReadings]
+    """Whether what was stated holds on them."""
     readings: ReadingRows
     samples: list[Sample]
     clouds: list[Cloud]

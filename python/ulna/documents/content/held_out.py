@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from ulna.arm.arm import Arm
@@ -28,8 +27,9 @@ def held_out(
     rows: list[QualityRow] = []
     said: list[Said] = []
     parts: list[Rows] = []
-    if study is not None and study.path is not None and study.rows == "fit":
-        parts += _checked(result, study, study.path)
+    check = None if study is None else kept_to_check(study)
+    if check is not None:
+        parts += _checked(result, check)
     if cross_validation is not None:
         parts.append(_left_out(cross_validation))
     if evaluation is not None:
@@ -40,11 +40,14 @@ def held_out(
     return rows, said if rows else [*said, Said("held-out.none")]
 
 
-def _checked(result: Result, study: Study, path: Path) -> list[Rows]:
-    """Rows that the study keeps to check; nothing where it keeps none."""
-    if rows_to_judge(path) != "check":
-        return []
-    check = Study.load(path, "check")
+def kept_to_check(study: Study) -> Study | None:
+    """Rows that a study keeps to check the fit; None where it keeps none."""
+    if study.path is None or study.rows != "fit" or rows_to_judge(study.path) != "check":
+        return None
+    return Study.load(study.path, "check")
+
+
+def _checked(result: Result, check: Study) -> list[Rows]:
     after = overall_figures(result.arm, study_of_arm(check, result.arm))
     before = overall_figures(start_of(result), study_of_arm(check, result.arm))
     count = sum(len(group) for group in check.readings)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.probes import ProbeView
+from ulna.arm.unknown import Unknown
 from ulna.calibration.observability import indices
 from ulna.calibration.result import Result
 from ulna.ground.arrays import F64
@@ -51,7 +52,9 @@ class Parameters:
     p: float
     """Coverage probability that k stands for."""
     degrees_of_freedom: float
-    """Infinite where the noise is stated, so that u does not come from the residuals."""
+    """Of every u; infinite where all that it rests on was stated."""
+    unknown: Unknown | None
+    """Why there is no u; None where there is."""
     probes: list[ProbeView]
     correlation_names: list[str]
     correlation: F64
@@ -74,12 +77,11 @@ class Observability:
 def parameters(result: Result) -> Parameters:
     """Every parameter, none left out.
 
-    k is of Student's distribution with the fit's degrees of freedom where u was estimated from the residuals, and
-    normal where the noise was stated (GUM G.3.2, G.6.4).
+    k is of Student's distribution where residuals had a say in u, with their degrees of freedom, and normal where the
+    noise was stated and they do not contradict it (GUM G.3.2, G.6.4).
     """
-    stated = bool(result.provenance.get("noise"))
-    freedom = math.inf if stated else float(result.fit.degrees_of_freedom)
-    k = coverage_factor(COVERAGE, freedom) if freedom > 0.0 else math.nan
+    freedom, unknown = result.noise.degrees_of_freedom, result.covariance.why_none
+    k = coverage_factor(COVERAGE, freedom) if unknown is None else math.nan
     lost: dict[str, dict[str, Any]] = {}
     for direction in result.identifiability.lost:
         for name in direction["combination"]:
@@ -104,7 +106,7 @@ def parameters(result: Result) -> Parameters:
         )
     known = {row.name for row in rows if row.u is not None}
     names, matrix = correlation(result.covariance.of([name for name in result.covariance.names if name in known]))
-    return Parameters(rows, k, COVERAGE, freedom, result.probes, names, matrix)
+    return Parameters(rows, k, COVERAGE, freedom, unknown, result.probes, names, matrix)
 
 
 def correlation(covariance: ParameterCovariance) -> tuple[list[str], F64]:

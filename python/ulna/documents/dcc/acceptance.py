@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from ulna.documents.certified.test_values import StatedTest, StatedTests, Temperature
 from ulna.documents.dcc.administrative import software
 from ulna.documents.dcc.conditions import input_files, laboratory_conditions
-from ulna.documents.dcc.quantities import Expanded, quantity, real, real_list, standard_real
+from ulna.documents.dcc.quantities import Expanded, quantity, real, real_list, standard_real, two_digits
 from ulna.documents.dcc.results import result_of
+from ulna.documents.dcc.risks import risks
 from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.dcc.statements import statement
 from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.documents.sections.decision import rule
+from ulna.documents.sections.verification import lifted, not_covered
 
 #: of the conditions, as DCC calls the state of the arm
 _STATUS: dict[str, str] = {"as-found": "beforeAdjustment", "as-left": "afterAdjustment"}
@@ -36,8 +40,8 @@ def tests_result(
         data = result_of(sheet, results, sheet.theirs(name))
         for value in tests.values:
             if value.test == name:
-                _value(sheet, data, value, _rule(sheet, tests))
-                _singles(sheet, data, value)
+                _value(sheet, data, value, tests)
+                _singles(sheet, data, value, tests.accredited)
     metas = sheet.dcc(element, "measurementMetaData")
     if tests.departures:
         meta = sheet.dcc(metas, "metaData")
@@ -53,7 +57,7 @@ def _title(sheet: Sheet, tests: StatedTests) -> Texts:
 
 
 def _rule(sheet: Sheet, tests: StatedTests) -> Texts:
-    return sheet.spoken(lambda words, _: rule(tests.rule, tests.k, words))
+    return sheet.spoken(lambda words, _: rule(tests.rule, words))
 
 
 def _temperature(sheet: Sheet, conditions: Element, temperature: Temperature, status: str) -> None:
@@ -64,22 +68,25 @@ def _temperature(sheet: Sheet, conditions: Element, temperature: Temperature, st
     standard_real(sheet, one, temperature.value_c, "°C", temperature.u_k)
 
 
-def _value(sheet: Sheet, data: Element, value: StatedTest, decided: Texts) -> None:
+def _value(sheet: Sheet, data: Element, value: StatedTest, tests: StatedTests) -> None:
     one = quantity(sheet, data, sheet.theirs(value.name), "basic_measuredValue", sheet.theirs(value.formula))
     expanded = None if value.expanded is None else (value.expanded, value.k, value.p)
-    real(sheet, one, value.value, value.unit, expanded)
+    real(sheet, one, value.value, value.unit, expanded, tests.accredited)
     metas = sheet.dcc(one, "measurementMetaData")
     meta = sheet.dcc(metas, "metaData", ref="basic_conformity")
     sheet.text(meta, "name", sheet.own("dcc.conformity"))
-    sheet.text(meta, "declaration", _declared(sheet, value, decided))
+    sheet.text(meta, "declaration", _declared(sheet, value, _rule(sheet, tests)))
     if value.limit is not None:
         if value.conformity is not None:
             sheet.dcc(meta, "conformity", value.conformity)
         limits = sheet.dcc(meta, "data")
         real(sheet, quantity(sheet, limits, sheet.own("dcc.limit")), value.limit, value.unit)
         if value.guard is not None:
-            real(sheet, quantity(sheet, limits, sheet.own("dcc.guard")), value.guard, value.unit)
-    _budget(sheet, metas, value)
+            guard = two_digits(value.guard, tests.accredited)
+            real(sheet, quantity(sheet, limits, sheet.own("dcc.guard")), guard, value.unit)
+        if value.risk is not None:
+            risks(sheet, limits, value.risk)
+    _budget(sheet, metas, value, tests.accredited)
 
 
 def _declared(sheet: Sheet, value: StatedTest, decided: Texts) -> Texts:
@@ -89,7 +96,7 @@ def _declared(sheet: Sheet, value: StatedTest, decided: Texts) -> Texts:
     return sheet.own("dcc.undecidable" if word is None else f"dcc.says-{word}", rule=decided)
 
 
-def _budget(sheet: Sheet, metas: Element, value: StatedTest) -> None:
+def _budget(sheet: Sheet, metas: Element, value: StatedTest, accredited: bool) -> None:
     """What the uncertainty is made of, and what is not in it."""
     if not value.budget and not value.left_out:
         return
@@ -97,14 +104,15 @@ def _budget(sheet: Sheet, metas: Element, value: StatedTest) -> None:
     sheet.text(meta, "name", sheet.own("dcc.budget"))
     data = sheet.dcc(meta, "data")
     if value.budget:
-        names, contributions = zip(*value.budget, strict=True)
+        names = [name for name, _ in value.budget]
+        contributions = [two_digits(u, accredited) for _, u in value.budget]
         one = quantity(sheet, data, sheet.own("dcc.contributors"))
         real_list(sheet, one, names, contributions, [value.unit] * len(names))
     for text in value.left_out:
         sheet.text(data, "text", sheet.own("dcc.left-out", what=text))
 
 
-def _singles(sheet: Sheet, data: Element, value: StatedTest) -> None:
+def _singles(sheet: Sheet, data: Element, value: StatedTest, accredited: bool) -> None:
     """All values of a figure that has more than one."""
     if len(value.singles) < 2:
         return
@@ -117,18 +125,35 @@ def _singles(sheet: Sheet, data: Element, value: StatedTest) -> None:
         labels,
         [single.value for single in value.singles],
         [value.unit] * len(labels),
-        Expanded(expanded, value.k, value.p) if len(expanded) == len(labels) else None,
+        Expanded(expanded, value.k, value.p, rounded=accredited) if len(expanded) == len(labels) else None,
     )
+    known = [single.probability for single in value.singles if single.probability is not None]
     words = [single.conformity for single in value.singles if single.conformity is not None]
     if len(words) == len(labels):
-        meta = sheet.dcc(sheet.dcc(one, "measurementMetaData"), "metaData", ref="basic_conformity")
+        metas = sheet.dcc(one, "measurementMetaData")
+        meta = sheet.dcc(metas, "metaData", ref="basic_conformity")
         sheet.text(meta, "name", sheet.own("dcc.conformity"))
         sheet.dcc(meta, "conformityXMLList", " ".join(words))
+        if len(known) == len(labels):
+            probabilities = quantity(sheet, sheet.dcc(meta, "data"), sheet.own("dcc.conformity-probability"))
+            real_list(sheet, probabilities, labels, known, ["1"] * len(labels))
+
+
+def _capability(sheet: Sheet, tests: StatedTests) -> Iterator[Texts]:
+    """Which U was lifted to the laboratory's CMC, and of which figures it states none."""
+    for each in tests.lifted:
+        yield sheet.spoken(lambda words, _, each=each: lifted(each, words))  # type: ignore[misc]
+    if tests.without:
+        yield sheet.own("verification.no-cmc", figures=", ".join(tests.without))
 
 
 def conformity_statements(sheet: Sheet, statements: Element, tests: StatedTests) -> None:
     """What the profile says of itself, and a statement on the whole, with its rule."""
     statement(sheet, statements, _title(sheet, tests), sheet.theirs(tests.statement))
+    for text in _capability(sheet, tests):
+        statement(sheet, statements, sheet.own("dcc.cmc-name"), text)
+    covered = sheet.spoken(lambda words, _: not_covered(tests.scanner, words))
+    statement(sheet, statements, sheet.own("dcc.not-covered-name"), covered)
     word = tests.conformity
     if word is None:
         return

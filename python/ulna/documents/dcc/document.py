@@ -63,6 +63,8 @@ class Certificate:
                     "title": tests.title,
                     "conformity": tests.conformity,
                     "values": {value.name: value.conformity for value in tests.values},
+                    "lifted": [each.figure for each in tests.lifted],
+                    "without_cmc": list(tests.without),
                 }
                 for tests in self.tested
             ],
@@ -86,7 +88,7 @@ def dcc_certificate(
     calibration, stated = certified_result(path)
     found = calibration.result
     tested = [
-        *(tests for each in verification for tests in stated_tests(Path(each), calibration, known.file.item)),
+        *(tests for each in verification for tests in stated_tests(Path(each), calibration, known.file)),
         *tested,
     ]
     languages = tuple(known.file.languages)
@@ -124,7 +126,7 @@ def _calibration(
     software(sheet, sheet.dcc(calibration, "usedSoftware"), str(found.provenance["version"]))
     laboratory_conditions(of_laboratory, calibration, known.file)
     written = sheet.dcc(calibration, "results")
-    results.parameters(sheet, written, found, stated)
+    results.parameters(sheet, written, found, stated, known.file.laboratory.accreditation is not None)
     results.fit(sheet, written, found)
     results.figures(sheet, written, found)
     files = [("result.json", result_sha256)] + [(file["path"], file["sha256"]) for file in found.provenance["files"]]

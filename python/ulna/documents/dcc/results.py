@@ -23,18 +23,20 @@ def result_of(sheet: Sheet, parent: Element, name: Texts, description: Texts | N
     return sheet.dcc(element, "data")
 
 
-def parameters(sheet: Sheet, results: Element, result: Result, stated: StatedParameters) -> None:
-    """Fitted with U and their covariance, then those of which no uncertainty can be told."""
+def parameters(sheet: Sheet, results: Element, result: Result, stated: StatedParameters, accredited: bool) -> None:
+    """Fitted with U and their covariance, then those of which no uncertainty can be told. accredited: whether U has two
+    digits, and each value its place."""
     data = result_of(sheet, results, sheet.own("dcc.parameters"), sheet.own("dcc.parameters-text"))
     if stated.fitted:
         rows = stated.fitted
+        distribution = "normal" if math.isinf(stated.degrees_of_freedom) else "t"
         real_list(
             sheet,
             quantity(sheet, data, sheet.own("dcc.fitted"), "basic_measuredValue"),
             [row.name for row in rows],
             [row.value for row in rows],
             [row.unit for row in rows],
-            Expanded(stated.expanded, stated.k, stated.p, "normal" if math.isinf(stated.degrees_of_freedom) else "t"),
+            Expanded(stated.expanded, stated.k, stated.p, distribution, accredited),
             Region(stated.covariance, stated.k_region, stated.p),
         )
         _values(sheet, data, "start", rows, [row.start for row in rows], "basic_nominalValue")
@@ -75,8 +77,23 @@ def fit(sheet: Sheet, results: Element, result: Result) -> None:
     ]
     if result.fit.chi2_per_dof is not None:
         figures.append(("chi2", result.fit.chi2_per_dof, "1"))
+    figures += _scatter(result)
     for key, value, unit in figures:
         real(sheet, quantity(sheet, data, sheet.own(f"dcc.{key}")), value, unit)
+
+
+def _scatter(result: Result) -> list[tuple[str, float, str]]:
+    """What the residuals say of a reading's noise."""
+    found = result.fit.reading_scatter
+    if found is None:
+        return []
+    each = [
+        ("touch", found.touch_mm, "mm"),
+        ("factor", found.factor, "1"),
+        ("unexplained", found.unexplained_mm, "mm"),
+        ("place-factor", found.place_factor, "1"),
+    ]
+    return [(key, value, unit) for key, value, unit in each if value is not None]
 
 
 def figures(sheet: Sheet, results: Element, result: Result) -> None:

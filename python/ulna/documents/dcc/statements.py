@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from ulna.arm.directions import combination
+from ulna.arm.unknown import Unknown
 from ulna.calibration.result import Result
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.laboratory.file import Laboratory
+from ulna.ground.digits import degrees_of_freedom
 
 
 def statement(sheet: Sheet, parent: Element, name: Texts, text: Texts, ref: str | None = None) -> Element:
@@ -24,8 +26,12 @@ def statements(sheet: Sheet, parent: Element, laboratory: Laboratory, result: Re
     statement(sheet, parent, sheet.own("dcc.draft-name"), sheet.own("dcc.draft"))
     _laboratory(sheet, parent, laboratory)
     if stated.fitted:
-        statement(sheet, parent, sheet.own("section.uncertainty"), _uncertainty(sheet, stated))
-    statement(sheet, parent, sheet.own("dcc.rounding-name"), sheet.own("dcc.rounding"))
+        statement(sheet, parent, sheet.own("section.uncertainty"), _uncertainty(sheet, result, stated))
+    accredited = laboratory.file.laboratory.accreditation is not None
+    rounding = "dcc.rounding-accredited" if accredited else "dcc.rounding"
+    statement(sheet, parent, sheet.own("dcc.rounding-name"), sheet.own(rounding))
+    if accredited and stated.fitted:
+        statement(sheet, parent, sheet.own("dcc.cmc-name"), sheet.own("dcc.cmc-parameters"))
     _not_determined(sheet, parent, result, stated)
     for remark in laboratory.file.remarks:
         statement(sheet, parent, sheet.own("laboratory.remark"), sheet.theirs(remark))
@@ -43,15 +49,25 @@ def _laboratory(sheet: Sheet, parent: Element, laboratory: Laboratory) -> None:
         statement(sheet, parent, sheet.own("laboratory.accreditation"), text)
 
 
-def _uncertainty(sheet: Sheet, stated: StatedParameters) -> Texts:
+def _uncertainty(sheet: Sheet, result: Result, stated: StatedParameters) -> Texts:
     known = math.isinf(stated.degrees_of_freedom)
-    freedom = f"{stated.degrees_of_freedom:g}"
+    freedom = degrees_of_freedom(stated.degrees_of_freedom)
     return sheet.own(
         "dcc.uncertainty",
         distribution=sheet.own("dcc.normal") if known else sheet.own("dcc.student", freedom=freedom),
-        noise=sheet.own("dcc.noise-stated" if known else "dcc.noise-estimated"),
+        noise=_noise(sheet, result),
         p=f"{100 * stated.p:g} %",
     )
+
+
+def _noise(sheet: Sheet, result: Result) -> Texts:
+    """Where it is from, and what the residuals made of it."""
+    found = result.fit.reading_scatter
+    if not result.provenance.get("noise"):
+        return sheet.own("dcc.noise-estimated")
+    if found is not None and found.factor not in (None, 1.0):
+        return sheet.own("dcc.noise-scaled", factor=f"{found.factor:.3g}")
+    return sheet.own("dcc.noise-stated")
 
 
 def _not_determined(sheet: Sheet, parent: Element, result: Result, stated: StatedParameters) -> None:
@@ -65,10 +81,15 @@ def _not_determined(sheet: Sheet, parent: Element, result: Result, stated: State
         statement(sheet, parent, sheet.own("dcc.lost-name"), text)
     if stated.unsure:
         names = ", ".join(row.name for row in stated.unsure)
-        statement(sheet, parent, sheet.own("section.uncertainty"), sheet.own("dcc.unsure", names=names))
+        statement(sheet, parent, sheet.own("section.uncertainty"), _unsure(sheet, stated, names))
     if stated.held:
         names = ", ".join(row.name for row in stated.held)
         statement(sheet, parent, sheet.own("dcc.held-name"), sheet.own("dcc.held", names=names))
     if result.identifiability.from_prior:
         names = ", ".join(result.identifiability.from_prior)
         statement(sheet, parent, sheet.own("dcc.prior-name"), sheet.own("dcc.prior", names=names))
+
+
+def _unsure(sheet: Sheet, stated: StatedParameters, names: str) -> Texts:
+    why = stated.unknown or Unknown("freedom")
+    return sheet.own(f"dcc.unsure-{why.kind}", names=names, loss=why.loss, each=f"{why.each:.1f}")

@@ -53,6 +53,7 @@ TONES: dict[Tone, str] = {
 #: table → further classes: tall ones scroll, those of sentences break their lines
 LOOKS = {
     "quality": "",
+    "coverage": "",
     "parameters": "",
     "cylindrical": "",
     "directions": " prose",
@@ -60,6 +61,8 @@ LOOKS = {
     "indices": "",
     "verification": "",
     "singles": " tall",
+    "risk": "",
+    "global-risk": "",
     "artefacts": "",
     "equipment": "",
     "outliers": " tall",

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
+from ulna.documents.laboratory.capability import unknown_figures
 from ulna.documents.laboratory.tables import (
     CertificateTable,
     HumidityCondition,
@@ -74,6 +75,8 @@ def load_laboratory(path: str | Path) -> Laboratory:
     problems += _condition(file.environment.temperature, "temperature")
     if file.environment.humidity is not None:
         problems += _condition(file.environment.humidity, "humidity")
+    if file.cmc is not None:
+        problems += unknown_figures(file.cmc)
     if laboratory.logo is not None and not laboratory.logo.is_file():
         problems.append(
             f"key 'laboratory.logo': {laboratory.logo} is not there; expected a picture. Correct or remove it."
@@ -102,7 +105,7 @@ def _tables_of_texts(value: object, key: str) -> Iterator[tuple[str, dict[str, s
     elif isinstance(value, list):
         for number, each in enumerate(value, start=1):
             yield from _tables_of_texts(each, f"{key}.{number}")
-    elif isinstance(value, dict):
+    elif isinstance(value, dict) and all(isinstance(each, str) for each in value.values()):
         yield key, value
 
 

@@ -8,6 +8,8 @@ from pydantic import Field
 
 from ulna.documents.laboratory.texts import Country, Day, Language, Line, Link, Text
 from ulna.formats.models import Strict
+from ulna.formats.units import LengthUnit
+from ulna.verification.limits import LimitValue
 
 Issuer = Literal["manufacturer", "calibrationLaboratory", "customer", "owner", "other"]
 
@@ -95,6 +97,16 @@ class PersonTable(Strict):
     phone: Line | None = None
 
 
+class CapabilityTable(Strict):
+    """What the laboratory is accredited to state: its calibration and measurement capability (CMC)."""
+
+    unit: LengthUnit
+    """Of the lengths below."""
+    figure: Annotated[dict[str, LimitValue], Field(min_length=1)]
+    """The smallest expanded uncertainty, with a coverage probability of about 95 %, of a figure of a test by its short
+    name: U, or { a, b } of one that grows with the length."""
+
+
 class IdentificationTable(Strict):
     """A number by which somebody knows a thing."""
 
@@ -117,6 +129,8 @@ class ItemTable(Strict):
     description: Text | None = None
     identifications: list[IdentificationTable] = Field(default_factory=list)
     """Further numbers."""
+    scanner: Line | None = None
+    """What the arm carries beside its probe, such as a laser line scanner: certificates say that it was not tested."""
 
 
 class EquipmentTable(Strict):
@@ -194,5 +208,6 @@ class LaboratoryFile(Strict):
     environment: EnvironmentTable
     equipment: list[EquipmentTable] = Field(default_factory=list)
     traceability: TraceabilityTable | None = None
+    cmc: CapabilityTable | None = None
     method: list[MethodTable] = Field(default_factory=list)
     remarks: list[Text] = Field(default_factory=list)

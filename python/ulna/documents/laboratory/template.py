@@ -52,6 +52,7 @@ manufacturer = ""
 model = ""
 serial = ""
 # description = ""
+# scanner = ""                 # what the arm carries beside its probe: it is said that it was not tested
 # identifications = [{ issuer = "customer", value = "", name = "Inventory number" }]
 
 [environment]
@@ -70,6 +71,10 @@ temperature = { value = "", u = "", unit = "°C" }
 
 # [traceability]
 # statement = ""
+
+# [cmc]                        # what an accredited laboratory may state at the least: no U of a test is below it
+# unit = "mm"
+# figure = { P_Size = 0.0010, E_Uni = { a = 0.0020, b = 500000 } }    # U, or a + L / b
 
 # [[method]]                   # procedures that the laboratory followed; Ulna adds how it fitted
 # name = ""

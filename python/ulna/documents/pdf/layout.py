@@ -31,6 +31,7 @@ LAYOUTS: dict[str, Layout] = {
         | _shares(1, *(f"{what}-{when}" for what in ("mean", "rms", "sigma", "max") for when in ("before", "after"))),
         size_pt=7.5,
     ),
+    "coverage": Layout({"quantity": 1, "readings": 2, **_shares(1, "judged", "inside", "share"), "interval": 1.6}),
     "artefacts": Layout({"artefact": 1.5, "kind": 1, "calibrated": 2, "u": 1.5, "placements": 0, "count": 0}),
     "equipment": Layout({"standard": 3, "serial": 2, "certificate": 2, "certified-by": 3}, size_pt=8.5),
     "extras": Layout(
@@ -49,6 +50,14 @@ LAYOUTS: dict[str, Layout] = {
         {"condition": 1, "figure": 2.6, "verdict": 1.5}
         | _shares(1, "value-mm", "expanded-mm", "limit-mm", "guard-mm")
         | {"values": 0.9}
+    ),
+    "risk": Layout(
+        {"condition": 1.3, "figure": 0.8}
+        | _shares(1.3, "conformity", "specific")
+        | _shares(1.5, "consumer-at-most", "producer-at-most")
+    ),
+    "global-risk": Layout(
+        {"condition": 1.3, "figure": 0.8} | _shares(1.4, "consumer", "producer", "withheld", "undecided")
     ),
     "files": Layout({"file": 1, "sha256": 0, "state": 0}, size_pt=7.5),
 }

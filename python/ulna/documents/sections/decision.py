@@ -7,6 +7,9 @@ from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Style, Text
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Tone, own
+from ulna.documents.sections.risk import risks
+from ulna.verification.decision import DecisionRule
+from ulna.verification.lifted import rule_of
 
 #: verdict → how it is shown
 STYLES: dict[str | None, Style] = {"pass": "pass", "fail": "fail", "undecided": "undecided", None: "none"}
@@ -18,15 +21,16 @@ def decision(content: Content, words: Words) -> list[Block]:
     found = content.verification
     if found is None:
         return [Paragraph(words("decision.none"))]
-    page: list[Block] = [Paragraph(rule(found.file.decision.rule, found.file.decision.k, words))]
+    page: list[Block] = [Paragraph(rule(rule_of(found.file.decision), words))]
     for whole in wholes(found.file):
         page += _whole(whole, words)
-    return page
+    return page + risks(found.file, words)
 
 
-def rule(name: str, k: float, words: Words) -> Text:
-    """In the manner of ISO 14253-1; name: of the guard band, "1.65u", "U" or "simple"."""
-    return words("rule", guard=words(f"guard.{name}", k=own(f"{k:g}")))
+def rule(decided: DecisionRule, words: Words) -> Text:
+    """In the manner of ISO 14253-1, its guard band named as JCGM 106 and ILAC-G8 do: w = r U."""
+    r = own(f"{decided.part_of_expanded:.3g}")
+    return words("rule", guard=words(f"guard.{decided.rule}", k=own(f"{decided.k:g}"), r=r))
 
 
 def verdict(word: str | None, words: Words) -> Text:

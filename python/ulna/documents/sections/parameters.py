@@ -13,7 +13,8 @@ from ulna.documents.content.parameters import ParameterRow
 from ulna.documents.languages.text import NONE, Text, joined, named, number, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Heading, Paragraph, own, table
-from ulna.ground.digits import rounded, uncertainty
+from ulna.documents.sections.scatter import no_uncertainty
+from ulna.ground.digits import degrees_of_freedom, rounded, uncertainty
 
 COLUMNS = ("number", "parameter", "unit", "status", "nominal", "estimate", "u", "expanded", "ratio")
 
@@ -23,8 +24,9 @@ def parameters(content: Content, words: Words) -> list[Block]:
     known = content.parameters
     rows = [_parameter(k, row, words) for k, row in enumerate(known.rows, start=1)]
     page: list[Block] = [table("parameters", words("section.parameters"), words, COLUMNS, rows, left=4)]
-    if math.isnan(known.k):
-        page.append(Paragraph(words("parameters.no-u"), "missing"))
+    without = no_uncertainty(content, words)
+    if without is not None:
+        page.append(Paragraph(without, "missing"))
     else:
         about = words("parameters.note", k=own(f"{known.k:.2f}"), p=own(f"{100 * known.p:g}"))
         said = [about, words("parameters.rounding"), u_comes_from(content, words), words("parameters.only")]
@@ -33,11 +35,15 @@ def parameters(content: Content, words: Words) -> list[Block]:
 
 
 def u_comes_from(content: Content, words: Words) -> Text:
-    """Of the noise that was stated, or of the residuals."""
-    freedom = content.parameters.degrees_of_freedom
+    """Of the noise that was stated, of the residuals, or of both."""
+    freedom, found = content.parameters.degrees_of_freedom, content.fit.reading_scatter
     if math.isinf(freedom):
-        return words("parameters.stated")
-    return words("parameters.estimated", freedom=int(freedom))
+        elsewhere = found is not None and (found.place_factor or 1.0) > 1.0
+        return words("parameters.places" if elsewhere else "parameters.stated")
+    shown = own(degrees_of_freedom(freedom))
+    if found is None or found.factor is None:
+        return words("parameters.estimated", freedom=shown)
+    return words("parameters.scaled", factor=own(f"{found.factor:.3g}"), freedom=shown)
 
 
 def _parameter(k: int, row: ParameterRow, words: Words) -> list[Text]:

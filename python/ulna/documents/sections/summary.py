@@ -11,7 +11,8 @@ from ulna.documents.languages.text import Text, named, plain, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Listed, Paragraph, Tile, Tiles, own
 from ulna.documents.sections.decision import STYLES, verdict
-from ulna.ground.digits import figure_mm
+from ulna.documents.sections.scatter import scatter
+from ulna.ground.digits import degrees_of_freedom, figure_mm
 
 #: sets of joints whose signs are not told, of which each is named
 _FEW_SETS = 3
@@ -33,9 +34,10 @@ def counts(content: Content, words: Words) -> list[Block]:
             readings=fit.readings,
             observations=fit.observations,
             placements=fit.placement_unknowns,
-            freedom=fit.degrees_of_freedom,
+            freedom=own(degrees_of_freedom(fit.degrees_of_freedom)),
         ),
         words("summary.no-noise") if fit.chi2_per_dof is None else words("summary.chi2", chi2=fit.chi2_per_dof),
+        *scatter(content, words),
         words("summary.determined", determined=found.determined, parameters=found.parameters),
         words(
             "summary.outliers" if fit.loss == "none" else "summary.outliers-loss",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Heading, Listed, Paragraph, own
 from ulna.documents.sections.conditions import noise
 from ulna.documents.sections.parameters import u_comes_from
+from ulna.documents.sections.scatter import no_uncertainty, scatter
 from ulna.ground.digits import uncertainty
 
 #: what no fit can see
@@ -19,8 +18,9 @@ NEVER = ("thermal", "model", "time", "use")
 def uncertainty_statement(content: Content, words: Words) -> list[Block]:
     """In the manner of the GUM."""
     known = content.parameters
-    if math.isnan(known.k):
-        return [Paragraph(words("parameters.no-u"), "missing")]
+    without = no_uncertainty(content, words)
+    if without is not None:
+        return [Paragraph(without, "missing")]
     manner = words("uncertainty.manner", k=own(f"{known.k:.2f}"), p=own(f"{100 * known.p:g}"))
     return [
         Paragraph(joined([manner, u_comes_from(content, words)], " ")),
@@ -32,8 +32,9 @@ def uncertainty_statement(content: Content, words: Words) -> list[Block]:
 
 
 def _within(content: Content, words: Words) -> list[Text]:
-    stated = math.isinf(content.parameters.degrees_of_freedom)
-    found = [words("included.readings" if stated else "included.scatter"), words("included.placements")]
+    stated = content.fit.chi2_per_dof is not None
+    found = [words("included.readings" if stated else "included.scatter"), *scatter(content, words)]
+    found.append(words("included.placements"))
     found += noise(content.environment, words)
     with_u = [(*named(row.name), *own(f" (u = {uncertainty(row.u_mm)} mm)")) for row in content.artefacts if row.u_mm]
     if with_u:

@@ -9,11 +9,13 @@ from ulna.documents.languages.text import NONE, Text, joined, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table
 from ulna.documents.sections.decision import STYLES, verdict
+from ulna.documents.sections.risk import share
 from ulna.ground.digits import figure_mm, rounded, uncertainty
+from ulna.verification.lifted import Lifted
 from ulna.verification.result_file import FigureTable, StateTable, TestedTable, ValueTable
 
 COLUMNS = ("condition", "figure", "verdict", "value-mm", "u-mm", "expanded-mm", "limit-mm", "guard-mm", "values")
-SINGLES = ("condition", "figure", "where", "verdict", "calibrated-mm", "value-mm", "limit-mm", "u-mm")
+SINGLES = ("condition", "figure", "where", "verdict", "calibrated-mm", "value-mm", "limit-mm", "u-mm", "conformity")
 
 
 def verification(found: Verification, words: Words) -> list[Block]:
@@ -26,12 +28,36 @@ def verification(found: Verification, words: Words) -> list[Block]:
     page += [
         table("verification", words("section.verification"), words, COLUMNS, rows, left=3),
         Paragraph(note, "note"),
+        *_lifted(found, words),
+        Paragraph(not_covered(found.scanner, words), "note" if found.scanner is None else "missing"),
     ]
     for state in file.states:
         said = [*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)]
         if said:
             title = words("verification.departures", state=words(f"state.{state.state}"))
             page += [Paragraph(title, "missing"), _english(said)]
+    return page
+
+
+def not_covered(scanner: str | None, words: Words) -> Text:
+    """What tests with a touching probe say nothing of."""
+    return words("verification.tactile") if scanner is None else words("verification.scanner", scanner=scanner)
+
+
+def lifted(each: Lifted, words: Words) -> Text:
+    """Which U was too small for the laboratory to state."""
+    state = words(f"state.{each.state}")
+    said = words("verification.lifted", figure=each.figure, state=state, values=each.values)
+    if each.computed_mm is None:
+        return said
+    sizes = {"computed": own(uncertainty(each.computed_mm)), "stated": own(uncertainty(each.stated_mm))}
+    return joined([said, words("verification.lifted-worst", **sizes)], " ")
+
+
+def _lifted(found: Verification, words: Words) -> list[Block]:
+    page: list[Block] = [Paragraph(lifted(each, words), "missing") for each in found.lifted]
+    if found.without:
+        page.append(Paragraph(words("verification.no-cmc", figures=", ".join(found.without)), "missing"))
     return page
 
 
@@ -49,6 +75,7 @@ def formulas(found: Verification, words: Words) -> list[Block]:
 
 def singles(found: Verification, words: Words, most: int) -> list[Block]:
     """The first `most` single values, and how many more there are."""
+    # to the place of U, as the worst values are: a table of singles may not tell more than a certificate does
     rows = [_single(state, figure, each, words) for state, _, figure in _figures(found) for each in figure.individual]
     title = words("verification.singles", count=len(rows))
     page: list[Block] = [Heading(title), table("singles", title, words, SINGLES, rows[:most], left=4)]
@@ -82,6 +109,7 @@ def _figure(state: StateTable, test: TestedTable, figure: FigureTable, words: Wo
 
 
 def _single(state: StateTable, figure: FigureTable, each: ValueTable, words: Words) -> list[Text]:
+    value, _ = rounded(each.value, None if each.u is None else figure.k * each.u, "mm")
     where = " / ".join(label for label in (each.artefact, each.position, each.orientation, each.repeat) if label)
     return [
         words(f"state.{state.state}"),
@@ -89,7 +117,8 @@ def _single(state: StateTable, figure: FigureTable, each: ValueTable, words: Wor
         named(where),
         verdict(each.verdict, words),
         NONE if each.calibrated is None else own(f"{each.calibrated:.4f}"),
-        *(own(shown) for shown in (figure_mm(each.value), _mm(each.limit), uncertainty(each.u))),
+        *(own(shown) for shown in (value, _mm(each.limit), uncertainty(each.u))),
+        share(each.conformity),
     ]
 
 

@@ -79,12 +79,19 @@ def arm_from_table(table: Table, convention: Convention, tip: tuple[float, float
                     "have; expected 0. Give the table with --convention dh if it is one, or make it 0."
                 )
         joints, probes, base = from_modified(table.joints, frames)
-    joints, probes, parallel = hayati_where_parallel(joints, probes)
+    joints, probes, changed = hayati_where_parallel(joints, probes)
     remarks = doubts(table)
+    parallel = [str(k) for k in changed if joints[k - 1].model == "hayati"]
     if parallel:
         remarks.append(
-            f"Hayati joints, because the next axis is (nearly) parallel: {', '.join(map(str, parallel))}. An offset d "
-            "of theirs is in the next joint's; the arm is the same."
+            f"Hayati joints, because the next axis is (nearly) parallel: {', '.join(parallel)}. An offset d of theirs "
+            "is in the next joint's, or in the tips; the arm is the same."
+        )
+    opened = [str(k) for k in changed if joints[k - 1].model == "dh"]
+    if opened:
+        remarks.append(
+            f"DH joints, because an offset of the joint before came to them and the next axis is far from parallel: "
+            f"{', '.join(opened)}. A d is in place of their beta; the arm is the same."
         )
     if not np.array_equal(base, np.eye(4)):
         remarks.append(base_remark(base, "of the table"))

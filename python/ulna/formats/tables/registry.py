@@ -116,6 +116,11 @@ def _names(names: Sequence[str], joined: str) -> str:
 WHAT = f"a table ({_names([each.listed for each in LISTED], 'or')})"
 
 
+def taken_for_text(start: bytes) -> bool:
+    """Whether a file that begins so is read as text: no other format has its mark."""
+    return next((each for each in FORMATS if each.recognised(start)), None) is FORMATS[-1]
+
+
 def open_table(path: Path, start: bytes, what: str, layout: Layout) -> Header:
     """A file by its first bytes, opened by the format that recognises it.
 

@@ -18,6 +18,7 @@ from ulna.formats.header import Header
 from ulna.formats.layout import TableKeys
 from ulna.formats.rows import SplitTable
 from ulna.formats.tables.frame import FrameTable
+from ulna.formats.tables.heads import is_number
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
@@ -86,7 +87,8 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
             f"{header.path}: {header.head} begins with '#' ({', '.join(header.columns)[:60]}); expected the header "
             f"with {expected[0]} … {expected[-1]}. Remove the comment, or the '#'."
         )
-    if len(header.columns) == 1 and len(header.columns[0].split()) > 1:
+    words = header.columns[0].split()
+    if len(header.columns) == 1 and len(words) > 1 and (expected[0] in words or all(map(is_number, words))):
         raise UlnaInputError(
             f"{header.path}: {header.head} is one column, '{header.columns[0][:60]}'; expected {expected[0]} … "
             f'{expected[-1]}. Are the columns separated by blanks? Say separator = " " (--separator " ").'

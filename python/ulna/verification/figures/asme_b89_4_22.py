@@ -18,54 +18,63 @@ DIAMETER = Definition(
     "mean(D_i) - D_cal, signed; D_i: diameter of the least-squares sphere of one measurement of the ball, less the "
     "diameter of the tip",
     STANDARD,
+    signed=True,
 )
 DIAMETER_WORST = Definition(
     "Effective diameter: largest deviation",
     "Diameter_max",
     "the D_i - D_cal of the largest size, signed",
     STANDARD,
+    signed=True,
 )
 DIAMETER_SPREAD = Definition(
     "Effective diameter: standard deviation",
     "Diameter_s",
     "√(Σ(D_i - mean(D))² / (n - 1))",
     STANDARD,
+    signed=False,
 )
 SPAT_MAX = Definition(
     "Single-point articulation: largest deviation",
     "SPAT_max",
     "max δ_i, δ_i = ‖p_i - mean(p)‖, over the touches of one seat",
     STANDARD,
+    signed=False,
 )
 SPAT_2S = Definition(
     "Single-point articulation: 2·S",
     "SPAT_2S",
     "2 √(Σδ_i² / (n - 1)), δ_i = ‖p_i - mean(p)‖, over the n touches of one seat",
     STANDARD,
+    signed=False,
 )
 VOLUMETRIC_MAX = Definition(
     "Volumetric: largest deviation",
     "Volumetric_max",
     "the L_i - L_cal,i of the largest size, signed, over the ball bar's positions",
     STANDARD,
+    signed=True,
 )
 VOLUMETRIC_2S = Definition(
     "Volumetric: 2 standard deviations",
     "Volumetric_2S",
     "2 √(Σ(e_i - mean(e))² / (n - 1)), e_i = L_i - L_cal,i",
     STANDARD,
+    signed=False,
 )
 VOLUMETRIC_HALF_RANGE = Definition(
     "Volumetric: half the range",
     "Volumetric_half_range",
     "(max e_i - min e_i) / 2, e_i = L_i - L_cal,i",
     STANDARD,
+    signed=False,
 )
 VOLUMETRIC_2RMS = Definition(
     "Volumetric: 2·RMS",
     "Volumetric_2RMS",
     "2 √(Σe_i² / n), e_i = L_i - L_cal,i: other than 2 standard deviations, it holds the mean error",
     STANDARD,
+    signed=False,
 )
 
 

@@ -17,6 +17,7 @@ SPAT_AXES = tuple(
         f"FARO_SPAT_{axis}",
         f"(max {axis} - min {axis}) / 2 over the touches of one seat; it depends on the directions of the axes",
         STANDARD,
+        signed=False,
     )
     for axis in "xyz"
 )

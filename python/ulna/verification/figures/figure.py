@@ -24,6 +24,8 @@ class Definition:
     """In words and signs; lengths in mm."""
     standard: str
     """Its source."""
+    signed: bool
+    """Whether it may be negative; what may not is limited from above alone."""
     unit: Literal["mm"] = "mm"
 
     def of(self, value: ArrayLike) -> Figure:

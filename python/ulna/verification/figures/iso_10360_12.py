@@ -17,12 +17,14 @@ P_SIZE = Definition(
     "D_fit - D_cal, signed; D_fit: diameter of the unconstrained least-squares sphere of the probe-centre points of "
     "one ball, less the diameter of the tip (of a hollow: more)",
     STANDARD,
+    signed=True,
 )
 P_FORM = Definition(
     "P_Form.Sph.1x25:Tact.AArm",
     "P_Form",
     "R_max - R_min: largest minus smallest distance of a point from the centre of the same sphere",
     STANDARD,
+    signed=False,
 )
 L_DIA = Definition(
     "L_Dia.5x5:Art:Tact.AArm",
@@ -30,12 +32,14 @@ L_DIA = Definition(
     "diameter of the smallest sphere that holds the centres of the least-squares spheres, one centre for each "
     "orientation of the probe on one ball",
     STANDARD,
+    signed=False,
 )
 E_UNI = Definition(
     "E_Uni:Tact.AArm",
     "E_Uni",
     "L - L_cal, signed: length measured from the same direction, or centre to centre, minus the calibrated length",
     STANDARD,
+    signed=True,
 )
 E_BI = Definition(
     "E_Bi:Tact.AArm",
@@ -43,6 +47,7 @@ E_BI = Definition(
     "L - L_cal, signed: length measured from opposing directions, the diameter of the tip taken off, minus the "
     "calibrated length",
     STANDARD,
+    signed=True,
 )
 
 

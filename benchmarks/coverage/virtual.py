@@ -8,6 +8,7 @@ calibrations redrawn (of the bar's lengths alone there, so that it takes minutes
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ from ulna.uncertainties.measurands import Touched
 from ulna.uncertainties.regions import contains
 from ulna.uncertainties.task import Task
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "benchmarks" / "coverage.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks" / "coverage.md"
 BALL_MM = 30.0
 TOUCHES = 25
 
@@ -133,17 +134,14 @@ def page(found: dict[str, float], arms: int, trials: int, runs: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main() -> None:
+def main(arguments: Sequence[str]) -> None:
+    """Measure, print, and write the page."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coverage", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--arms", type=int, default=1000)
     parser.add_argument("--trials", type=int, default=10_000, help="of Monte Carlo, for each measurement")
     parser.add_argument("--runs", type=int, default=2000, help="calibrations redrawn, for each arm")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     text = page(shares(given.arms, given.trials, given.runs), given.arms, given.trials, given.runs)
     print(text)
     PAGE.write_text(text, encoding="utf-8")
     print(f"written: {PAGE.name}", file=sys.stderr)
-
-
-if __name__ == "__main__":
-    main()
