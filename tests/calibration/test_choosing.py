@@ -12,10 +12,11 @@ from tests.calibration.test_extras_judged import eccentric, study_of
 from tests.cli_runs import platinum
 
 import ulna
-from ulna.calibration.choosing import choose as choosing
-from ulna.calibration.choosing.choose import choose, chosen
-from ulna.calibration.choosing.groups import MOST_READINGS, groups_of, regions, thinned
+from ulna.calibration.choosing import trying
+from ulna.calibration.choosing.choose import choose
+from ulna.calibration.choosing.groups import FEWEST_OF_PART, MOST_READINGS, groups_of, regions, thinned
 from ulna.calibration.choosing.models import HARMONICS, allowed
+from ulna.calibration.choosing.rule import compared
 from ulna.calibration.figures import overall_figures
 from ulna.study.data import FitOptions, Prior
 from ulna.study.study import Study
@@ -60,7 +61,7 @@ def test_the_same_each_time_and_in_the_file(tmp_path: Path) -> None:
 
 def test_the_budget_ends_the_search_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = choose(of_eccentric(3e-4, extras="auto")).model
-    monkeypatch.setattr(choosing, "BUDGET", 1.2e9)
+    monkeypatch.setattr(trying, "BUDGET", 1.2e9)
     part = choose(of_eccentric(3e-4, extras="auto")).model
     assert whole.ended == "all-tried"
     assert part.ended == "budget"
@@ -71,7 +72,7 @@ def test_the_budget_ends_the_search_and_says_so(monkeypatch: pytest.MonkeyPatch)
 def test_what_is_left_out_has_no_say(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each fold chooses from its training rows alone."""
     seen: list[int] = []
-    real = choosing.choose
+    real = choose
 
     def counted(study: Study, progress: object = None) -> object:
         seen.append(sum(len(group) for group in study.readings))
@@ -83,10 +84,22 @@ def test_what_is_left_out_has_no_say(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_one_standard_error() -> None:
-    """The simplest that cannot be told from the best, and never one worse than geometry alone."""
-    errors = np.array([[1.0, 1.2, 1.1], [0.5, 0.9, 0.6], [0.5, 0.8, 0.65]])
-    assert chosen(errors, [0, 7, 80]) == (2, 1)
-    assert chosen(np.array([[1.0, 1.0, 1.0], [1.01, 1.0, 1.0]]), [0, 7]) == (0, 0)
+    """Of what cannot be told from the best, the most blocks; never what is worse than geometry alone."""
+    errors = np.array([[1.0, 1.2, 1.1], [0.5, 0.9, 0.6], [0.5, 0.8, 0.65], [0.5, 0.85, 0.62], [0.9, 1.1, 1.0]])
+    found = compared(errors, [0, 1, 1, 2, 3])
+    assert found.best == 2
+    assert found.chosen == 3
+    assert found.worse[2] == 0.0
+    assert found.error_mm[0] == pytest.approx((1.0 * 1.2 * 1.1) ** (1 / 3))
+    # within one standard error of the best, which is geometry alone: still worse than it
+    assert compared(np.array([[1.0, 1.0, 1.0], [1.3, 1.0, 0.8]]), [0, 1]).chosen == 0
+
+
+def test_one_bad_group_does_not_outweigh_the_others() -> None:
+    """Ratios, not millimetres: better by a tenth nine times, worse by a tenth where all err hundredfold."""
+    alone = np.array([1.0] * 9 + [100.0])
+    other = np.array([0.9] * 9 + [110.0])
+    assert compared(np.array([alone, other]), [0, 1]).chosen == 1
 
 
 def test_regions_are_of_near_equal_size_and_hold_together() -> None:
@@ -113,6 +126,17 @@ def test_a_single_standing_is_told_into_regions_and_few_readings_are_not() -> No
     assert len(found.standings) == 8
 
 
+def test_parts_that_say_next_to_nothing_are_left_out_of_it() -> None:
+    study = of_eccentric(3e-4)
+    (group,) = study.readings
+    two = np.array(["a"] * 238 + ["b"] * 2, dtype=object)
+    found = groups_of(replace(study, readings=[replace(group, placement=two)]))
+    assert found is not None
+    assert sum(len(each) for each in found.study.readings) == 238
+    for each in found.study.readings:
+        assert np.bincount(each.placement_code).min() >= FEWEST_OF_PART
+
+
 def test_blocks_that_a_study_does_not_allow_say_why() -> None:
     found, impossible = allowed(of_eccentric(3e-4))
     assert found == []
@@ -124,7 +148,7 @@ def test_blocks_that_a_study_does_not_allow_say_why() -> None:
 def test_what_the_study_states_of_amplitudes_stands() -> None:
     study = of_eccentric(3e-4, extras="auto", prior={"joint.*.[cs][0-9]*": Prior(1e-4)})
     choice = choose(study)
-    assert all(each.fall is None for each in choice.model.tried)
+    assert all(each.fall is None and HARMONICS not in each.prior_u for each in choice.model.tried)
     assert list(choice.study.fit.prior)[-1] == "joint.*.[cs][0-9]*"
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
-from ulna.ground.arrays import F64, I64
+from ulna.ground.arrays import F64, I64, Bool
 from ulna.study.study import Study
 
 FEWEST_PLACES = 5
@@ -26,6 +26,8 @@ REGIONS = 8
 FEWEST_READINGS = 12
 """In a region, on average."""
 FEWEST_REGIONS = 4
+FEWEST_OF_PART = 4
+"""Readings of a placement in a region; fewer are left out of it all."""
 MOST_READINGS = 5000
 """Of more, some say as well which model is best."""
 
@@ -60,8 +62,19 @@ def groups_of(study: Study) -> Groups | None:
     code = regions(np.concatenate([each.q_rad for each in study.readings]), parts)
     ends = np.cumsum([len(each) for each in study.readings])[:-1]
     codes = np.split(code, ends)
-    parted = [_parted(each, own) for each, own in zip(study.readings, codes, strict=True)]
-    return _grouped("regions of readings", dataclasses.replace(study, readings=parted), codes)
+    parted = dataclasses.replace(
+        study, readings=[_parted(each, own) for each, own in zip(study.readings, codes, strict=True)]
+    )
+    kept = [_large(each) for each in parted.readings]
+    codes = [code[mask] for code, mask in zip(codes, kept, strict=True) if mask.any()]
+    return _grouped("regions of readings", parted.subset(kept), codes)
+
+
+def whole(study: Study) -> Groups:
+    """All readings as one group, none parted."""
+    units, count = _units(study)
+    codes = [np.zeros(len(unit), dtype=np.int64) for unit in units]
+    return Groups("", study, codes, np.zeros(count, dtype=np.int64), 1)
 
 
 def thinned(study: Study) -> Study:
@@ -118,6 +131,14 @@ def _parted(readings: Readings, code: I64) -> Readings:
     placement = readings.placement_code
     labels = np.array([f"{a}/{b}" for a, b in zip(placement.tolist(), code.tolist(), strict=True)], dtype=object)
     return dataclasses.replace(readings, placement=labels)
+
+
+def _large(readings: Readings) -> Bool:
+    """(N,) false of parts with so few readings that they say next to nothing but where the part stands."""
+    if not kind_of(readings.artefact).placed(readings.artefact):
+        return np.ones(len(readings), dtype=bool)
+    large: Bool = np.bincount(readings.placement_code)[readings.placement_code] >= FEWEST_OF_PART
+    return large
 
 
 def _grouped(by: str, study: Study, codes: list[I64]) -> Groups:

@@ -1,9 +1,10 @@
-"""The models that are tried: every block that a study allows, with and without, and a ladder of harmonics' orders.
+"""The models that are tried: geometry alone, with its drawing, every block that a study allows, with and without, and
+a ladder of harmonics' orders.
 
 Amplitudes of harmonics are known beforehand to be small: those of order k to u √(1/k² + c²). The first part is of discs
-off their centre, which fades with the order, the second of gears, which does not. Two c are tried; u is the one with
-which the readings are likeliest (`ulna.calibration.choosing.widths`), or the one that any fit has. What a study itself
-states of them is kept.
+off their centre, which fades with the order, the second of gears, which does not. Two c are tried. u, and that of the
+other blocks' parameters, is the one with which the readings are likeliest (`ulna.calibration.choosing.widths`). What a
+study itself states of them is kept.
 """
 
 from __future__ import annotations
@@ -24,34 +25,30 @@ LADDER = (1, 2, 4, 10, 20, 40)
 """Highest orders tried."""
 HARMONICS = "encoder-harmonics"
 """The block whose orders are a ladder."""
-USUAL_MOST = 4
-"""Up to this order the prior that any fit has is tried as well: beyond, it lets too much through."""
+FALLS = (0.1, 0.4)
+"""c of the law."""
+TIMES = (1.0, 0.1)
+"""How well makers keep to lengths differs tenfold; where places are few it matters which it is."""
 MOST_SUBSETS_OF = 3
 """Of more blocks each alone, all, and all but each are tried, not every subset."""
-
-
-@dataclass(frozen=True)
-class Width:
-    """What is known beforehand of harmonics' amplitudes."""
-
-    fall: float | None
-    """c of the law; None: alike for all orders."""
-    learned: bool
-    """Whether u is learned from the readings; else it is as any fit has it, or as the study states it."""
-
-
-WIDTHS = (Width(0.1, True), Width(0.4, True), Width(None, False))
 
 
 @dataclass(frozen=True)
 class Model:
     """One to try."""
 
-    blocks: tuple[str, ...]
+    blocks: tuple[str, ...] = ()
     """Beside harmonics."""
     order: int = 0
     """Highest; 0: no harmonics."""
-    width: Width | None = None
+    fall: float | None = None
+    """c of the law; None: alike for all orders."""
+    drawn: bool = True
+    """Whether it knows how well arms keep to drawings."""
+    lengths: float = 1.0
+    """How well lengths of links are known from it: times as far as any."""
+    stated: frozenset[str] = frozenset()
+    """Blocks of which the study says what is known beforehand, or of which nothing is; of others it is learned."""
 
     @property
     def extras(self) -> list[str]:
@@ -59,15 +56,23 @@ class Model:
         return ([HARMONICS] if self.order else []) + list(self.blocks)
 
 
-def models_of(blocks: Sequence[str], most_order: int, stated: bool) -> list[Model]:
-    """All to try. stated: whether the study says itself what is known of the amplitudes."""
-    found = []
-    for chosen in _subsets(blocks):
-        found.append(Model(chosen))
-        for order in (order for order in LADDER if order <= most_order):
-            widths = [Width(None, False)] if stated else [w for w in WIDTHS if w.learned or order <= USUAL_MOST]
-            found += [Model(chosen, order, width) for width in widths]
-    return found
+def without_harmonics(blocks: Sequence[str], stated: frozenset[str]) -> list[Model]:
+    """Geometry alone first, then each subset of the blocks with lengths known well and very well."""
+    return [
+        Model(drawn=False),
+        *(Model(chosen, lengths=times, stated=stated) for chosen in _subsets(blocks) for times in TIMES),
+    ]
+
+
+def with_harmonics(blocks: Sequence[str], lengths: float, stated: frozenset[str]) -> list[Model]:
+    """Each subset of the blocks with the ladder."""
+    falls: Sequence[float | None] = (None,) if HARMONICS in stated else FALLS
+    return [
+        Model(chosen, order, fall, lengths=lengths, stated=stated)
+        for chosen in _subsets(blocks)
+        for order in LADDER
+        for fall in (falls if order > 1 else (None,))
+    ]
 
 
 def _subsets(blocks: Sequence[str]) -> list[tuple[str, ...]]:

@@ -1,4 +1,4 @@
-"""What the readings say of every parameter that any model has, where a fit of the geometry alone ended.
+"""What the readings say of every parameter that any model has, where a fit of the geometry ended.
 
 What an arm does beyond its geometry is small, so that models differ by one step of Gauss and Newton from there: a
 system of linear equations for each, of sums over the rows of each group, in place of a fit. Errors of readings left out
@@ -7,35 +7,25 @@ are then computed with the arm itself, nothing linear in them.
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
+from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import extra_of
+from ulna.calibration.choosing.drawing import LENGTHS, geometry_of, near
 from ulna.calibration.choosing.groups import Groups
 from ulna.calibration.choosing.models import HARMONICS, asking
 from ulna.calibration.running import run_assembled
-from ulna.ground.arrays import F64, I64, Bool
-from ulna.study.assembly import Assembled, assemble
-from ulna.study.parameters import priors
+from ulna.ground.arrays import F64, I64
+from ulna.study.assembly import assemble
+from ulna.study.parameters import names_like
+from ulna.study.study import Study
 
-DRAWN = {
-    "joint.*.theta0": ("rad", 1.0),
-    "joint.*.alpha": ("rad", 1.0),
-    "joint.*.beta": ("rad", 1.0),
-    "joint.*.a": ("mm", 1.0),
-    "joint.*.d": ("mm", 1.0),
-    "probe.*": ("mm", 5.0),
-}
-"""Geometry that is known from a drawing before any reading: its unit, and how many times less well than anything is
-known (somebody mounted a probe). Without that, blocks and geometry imitate each other."""
 RIDGE = 1e-10
 """Of columns of unit norm: what no reading shows stays where it is."""
 
@@ -65,17 +55,26 @@ class Rows:
     """(p,) index in all parameters of the problem."""
     at: F64
     """All parameters where the fit of the geometry ended."""
+    alone: F64
+    """The same of geometry alone, without the drawing."""
     arm: Arm
     grams: list[F64]
     """(p + 1, p + 1) of each group, residuals last."""
-    total: F64
-    """Of all groups together."""
     equations: list[int]
+    """Of each group."""
     before: Before
     drawn_u: dict[str, float]
-    """Pattern of `DRAWN` → standard deviation of what the drawing says."""
+    """Pattern → standard deviation of what the drawing says."""
     variance: float
-    """Of a row where the geometry alone is fitted."""
+    """Of a row where the geometry is fitted."""
+    lengths: I64
+    """Indices of links' lengths, where the study itself states nothing of them."""
+
+    @cached_property
+    def total(self) -> F64:
+        """Of all groups together."""
+        found: F64 = np.sum(self.grams, axis=0)
+        return found
 
     def which(self, blocks: Sequence[str], order: int) -> I64:
         """Indices (k,) of a model's parameters: geometry, its blocks, its harmonics."""
@@ -85,18 +84,12 @@ class Rows:
         ]
         return np.flatnonzero(kept)
 
-    def without(self, group: int | None) -> tuple[F64, int]:
-        """Sums and number of rows of all groups but one."""
-        if group is None:
-            return self.total, sum(self.equations)
-        return self.total - self.grams[group], sum(self.equations) - self.equations[group]
-
     def solved(self, which: I64, u: F64, variance: float, gram: F64) -> F64:
         """(k,) how far a model's parameters are from `at`; u (k,) beforehand, variance of a row."""
         weight = penalty(u, self.scale[which], variance)
         system = gram[np.ix_(which, which)] + np.diag(weight + RIDGE)
         known = gram[which, -1] + weight * self.scale[which] * self.before.off[which]
-        step: F64 = -cho_solve(cho_factor(system, lower=True), known) / self.scale[which]
+        step: F64 = -np.linalg.solve(system, known) / self.scale[which]
         return step
 
     def parameters(self, which: I64, step: F64) -> F64:
@@ -120,35 +113,22 @@ def penalty(u: F64, scale: F64, variance: float) -> F64:
 
 def rows_of(groups: Groups, blocks: Sequence[str], orders: Sequence[int]) -> Rows:
     """Of all models with these blocks and orders. Raises UlnaInputError."""
-    study = asking(groups.study, [HARMONICS, *blocks] if orders else list(blocks), orders or [1])
-    assembled = assemble(study)
-    block_of = [extra_of(name) or "" for name in assembled.names]
-    geometry = assembled.hold | np.array([extra != "" for extra in block_of])
-    fitted = run_assembled(study, _held(assembled, geometry))
+    geometry = geometry_of(asking(groups.study, [HARMONICS, *blocks], orders))
+    assembled, fitted = geometry.assembled, geometry.fitted
     rows, residuals, standing = _core.rows_of_fit(assembled.problem, assembled.hold, fitted)
     free = np.flatnonzero(~assembled.hold)
     names = [assembled.names[k] for k in free]
     scale = np.linalg.norm(rows, axis=0)
     scale[scale == 0.0] = 1.0
-    both = np.column_stack([rows / scale, residuals])
     group = groups.standings[standing]
-    of_group = [both[group == k] for k in range(groups.count)]
-    start = assembled.problem.parameters
-    off = fitted.parameters[free] - start[free]
-    u, drawn_u = np.full(len(free), np.inf), dict[str, float]()
-    for unit, known in (("rad", study.fit.known_angle_rad), ("mm", study.fit.known_length_mm)):
-        for times in sorted({times for own, times in DRAWN.values() if own == unit}):
-            patterns = [pattern for pattern, own in DRAWN.items() if own == (unit, times)]
-            which = [any(fnmatchcase(name, pattern) for pattern in patterns) for name in names]
-            u[which] = _spread(off[which], times * known)
-            drawn_u |= dict.fromkeys(patterns, _spread(off[which], times * known))
-    for k, (value, stated) in priors(study, assembled.names, assembled.units, start.tolist(), assembled.hold).items():
+    u, off = np.full(len(free), np.inf), np.zeros(len(free))
+    for k, (value, stated) in geometry.known.items():
         column = int(np.searchsorted(free, k))
         u[column], off[column] = stated, fitted.parameters[k] - value
-    off[~np.isfinite(u)] = 0.0
-    extra = [block_of[k] for k in free]
+    extra = [extra_of(name) or "" for name in names]
+    both = np.column_stack([rows / scale, residuals])
+    of_group = [both[group == k] for k in range(groups.count)]
     left = max(len(residuals) - sum(each == "" for each in extra), 1)
-    grams = [each.T @ each for each in of_group]
     return Rows(
         names=names,
         extra=extra,
@@ -156,23 +136,35 @@ def rows_of(groups: Groups, blocks: Sequence[str], orders: Sequence[int]) -> Row
         scale=scale,
         free=free,
         at=fitted.parameters.copy(),
+        alone=geometry.alone.parameters.copy(),
         arm=assembled.arm.with_signs(fitted.arm.signs),
-        grams=grams,
-        total=np.sum(grams, axis=0),
+        grams=[each.T @ each for each in of_group],
         equations=[len(each) for each in of_group],
         before=Before(u, off),
-        drawn_u=drawn_u,
+        drawn_u=geometry.drawn_u,
         variance=float(residuals @ residuals) / left,
+        lengths=_lengths(groups.study, names),
     )
 
 
-def _held(assembled: Assembled, hold: Bool) -> Assembled:
-    return dataclasses.replace(assembled, hold=hold)
+def alone_without(rows: Rows, training: Study) -> Arm:
+    """The arm of a plain fit of the geometry to some of the readings, from where that to all of them ended. Raises
+    UlnaInputError."""
+    given = training.with_arm(training.arm.with_signs(rows.arm.signs))
+    asked = asking(near(given), [], [1])
+    assembled = assemble(asked)
+    of_all = dict(zip(rows.arm.parameter_names, rows.alone.tolist(), strict=False))
+    start = assembled.problem.parameters.copy()
+    for k, name in enumerate(assembled.arm.parameter_names):
+        start[k] = of_all[name]
+    fitted = run_assembled(asked, assembled, None, start)
+    return assembled.arm.with_parameters(fitted.parameters[: len(assembled.arm.parameter_names)])
 
 
-def _spread(off: F64, known: float) -> float:
-    """How far an arm is from its drawing; no nearer than arms are known from drawings."""
-    return max(known, float(np.sqrt(np.mean(off**2)))) if len(off) else known
+def _lengths(study: Study, names: list[str]) -> I64:
+    stated = {name for pattern in study.fit.prior for name in names_like(pattern, names)}
+    own = {name for pattern in LENGTHS for name in names_like(pattern, names)} - stated
+    return np.flatnonzero([name in own for name in names])
 
 
 def _order(name: str) -> int:

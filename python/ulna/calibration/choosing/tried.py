@@ -15,24 +15,26 @@ class TriedModel:
     """One model, and how it did on readings that its fit had not seen."""
 
     extras: list[str]
-    """Its blocks beyond geometry; none: geometry alone."""
+    """Its blocks beyond geometry."""
     order: int | None
     """Highest order of its harmonics; None without."""
+    drawn: bool
+    """Whether it knows how well arms keep to drawings; false of plain least squares."""
     parameters: int
     """How many parameters its blocks add."""
-    prior_u_rad: float | None
-    """Standard deviation of an amplitude of order 1 before any reading, as the readings show it, or 5e-4 rad."""
+    lengths_u_mm: float | None
+    """Standard deviation of links' lengths about the drawing before any reading; None: not known, or as stated."""
+    prior_u: dict[str, float]
+    """Block → standard deviation of its parameters before any reading, as the readings show it, in their unit; of
+    harmonics that of an amplitude of order 1. Without what the study states."""
     fall: float | None
-    """c of the law by which it falls with the order k, √(1/k² + c²) of that of order 1; None: it does not, or the
-    study states it."""
+    """c of the law by which that of harmonics falls with the order k, √(1/k² + c²); None: it does not."""
     error_mm: float
-    """Its figure on the readings left out, mean over the groups."""
-    u_mm: float | None
-    """Standard error of that mean."""
-    worse_by_mm: float
-    """Than the model with the smallest error."""
-    u_worse_by_mm: float | None
-    """Standard error of that difference, from the groups."""
+    """Its figure on the readings left out, geometric mean over the groups."""
+    worse_by: float
+    """By what part of the error of the model with the smallest one: 0.03 is 3 %."""
+    u_worse_by: float
+    """Standard error of that, from the groups."""
     kept: bool
     seconds: float
     """What trying it took."""
@@ -45,6 +47,8 @@ class ChosenModel:
     extras: list[str]
     harmonics: list[int]
     """Orders."""
+    drawn: bool
+    """Whether what is known of an arm from its drawing is part of it."""
     ended: Ended
     by: str
     """What was left out together: "placements", "regions of placements" or "regions of readings"."""
@@ -53,10 +57,8 @@ class ChosenModel:
     figure: str
     """Which figure the models were compared by; "" where nothing was tried."""
     seconds: float
-    drawn_length_mm: float | None = None
-    """Where blocks were chosen: standard deviation of lengths about the arm file before any reading."""
-    drawn_angle_rad: float | None = None
-    """The same of angles."""
+    drawn_u: dict[str, float] = field(default_factory=dict)
+    """Pattern of parameters → standard deviation about the arm file before any reading, mm or rad; none: plain."""
     tried: list[TriedModel] = field(default_factory=list)
     """In the order of their parameters."""
     untried: int = 0

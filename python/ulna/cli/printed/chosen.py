@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from rich.console import RenderableType
 from rich.text import Text
 
+from ulna.calibration.choosing.models import HARMONICS
 from ulna.calibration.choosing.tried import ChosenModel, TriedModel
 from ulna.cli.printed.figures import WORDS
 from ulna.cli.printed.tables import table
-from ulna.ground.digits import figure_mm, uncertainty
+from ulna.ground.digits import figure_mm, fixed, uncertainty
 
+COLUMNS: tuple[tuple[str, Callable[[TriedModel], str]], ...] = (
+    ("param-\neters", lambda each: str(each.parameters)),
+    ("prior\nu / rad", lambda each: f"{each.prior_u[HARMONICS]:.0e}" if HARMONICS in each.prior_u else "–"),
+    ("left out\nmm", lambda each: figure_mm(each.error_mm)),
+    ("worse\n%", lambda each: fixed(100.0 * each.worse_by, 1)),
+    ("± u\n%", lambda each: fixed(100.0 * each.u_worse_by, 1)),
+    ("", lambda each: "chosen" if each.kept else ""),
+)
 _FEW = 5
 """Rows where there is no room for all: geometry alone, what was chosen, and the best."""
 
@@ -23,25 +32,13 @@ def chosen_model(chosen: ChosenModel | None, all_of_it: bool) -> list[Renderable
     if not chosen.tried:
         return ["", Text("No model was chosen: too few readings to leave some out. Geometry alone was fitted.")]
     rows = list(chosen.tried) if all_of_it else _some(chosen.tried)
-    heads = ("", "parameters", "prior u", "left out / mm", "worse by", "± u", "")
-    cells = [
-        (
-            model_in_words(each.extras, each.order),
-            str(each.parameters),
-            "–" if each.prior_u_rad is None else f"{each.prior_u_rad:.1e}",
-            figure_mm(each.error_mm),
-            figure_mm(each.worse_by_mm),
-            uncertainty(each.u_worse_by_mm),
-            "chosen" if each.kept else "",
-        )
-        for each in rows
-    ]
-    made = table(f"Models tried: {WORDS[chosen.figure]}, left out", heads, cells)
-    made.columns[6].justify = "left"
+    made = table(f"Models tried: {WORDS[chosen.figure]}, left out", [""] + [head for head, _ in COLUMNS], _cells(rows))
+    made.columns[len(COLUMNS)].justify = "left"
+    model = model_in_words(chosen.extras, chosen.harmonics[-1] if chosen.harmonics else None, chosen.drawn)
+    model = "geometry with its drawing" if model == "drawing" else model
     text = (
-        f"Chosen: {model_in_words(chosen.extras, chosen.harmonics[-1] if chosen.harmonics else None)}, the fewest "
-        f"parameters within one standard error of the best of {len(chosen.tried)} models, without each of "
-        f"{chosen.groups} groups ({chosen.by}); {chosen.seconds:.1f} s."
+        f"Chosen: {model}, the most blocks that cannot be told from the best of {len(chosen.tried)} models (one "
+        f"standard error), without each of {chosen.groups} groups ({chosen.by}); {chosen.seconds:.1f} s."
     )
     if chosen.ended == "budget":
         text += f" The budget ended the search: {chosen.untried} larger models were not tried."
@@ -54,12 +51,24 @@ def chosen_model(chosen: ChosenModel | None, all_of_it: bool) -> list[Renderable
     return parts
 
 
-def model_in_words(extras: Sequence[str], order: int | None) -> str:
-    """Its blocks."""
-    if not extras:
+def model_in_words(extras: Sequence[str], order: int | None, drawn: bool, lengths_u_mm: float | None = None) -> str:
+    """Its blocks; what is known of lengths where that is said."""
+    lengths = [] if lengths_u_mm is None else [f"lengths {uncertainty(lengths_u_mm)} mm"]
+    if not drawn:
         return "geometry alone"
-    names = [f"harmonics to {order}" if name == "encoder-harmonics" else name for name in extras]
-    return ", ".join(names)
+    names = [f"harmonics to {order}" if name == HARMONICS else name.removeprefix("link-") for name in extras]
+    return ", ".join([*(names or ["drawing"]), *lengths])
+
+
+def _cells(rows: Sequence[TriedModel]) -> list[list[str]]:
+    """Of models without harmonics it is said how lengths are known: those with take the better."""
+    return [
+        [
+            model_in_words(each.extras, each.order, each.drawn, None if each.order else each.lengths_u_mm),
+            *(cell(each) for _, cell in COLUMNS),
+        ]
+        for each in rows
+    ]
 
 
 def _some(tried: Sequence[TriedModel]) -> list[TriedModel]:

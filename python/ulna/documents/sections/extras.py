@@ -11,9 +11,15 @@ from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table
-from ulna.ground.digits import figure_mm, uncertainty
+from ulna.ground.digits import figure_mm, fixed, uncertainty
 
-TRIED = ("model", "quantity", "chosen", "parameters-more", "prior-u", "left-out", "worse", "u-better")
+TRIED = ("model", "quantity", "chosen", "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse")
+BY = {
+    "placements": "chosen.by.placements",
+    "regions of placements": "chosen.by.regions-of-placements",
+    "regions of readings": "chosen.by.regions-of-readings",
+}
+"""What was left out together, in words."""
 COLUMNS = ("extra", "quantity", "verdict", "without", "with", "better", "u-better")
 
 
@@ -40,10 +46,10 @@ def _chosen(chosen: ChosenModel | None, words: Words) -> list[Block]:
         return [Paragraph(words("chosen.too-few"), "note")]
     said = words(
         f"chosen.{chosen.ended}",
-        model=_model(chosen.extras, chosen.harmonics[-1] if chosen.harmonics else None, words),
+        model=_model(chosen.extras, chosen.harmonics[-1] if chosen.harmonics else None, chosen.drawn, words),
         models=len(chosen.tried),
         groups=chosen.groups,
-        by=words(f"chosen.by.{chosen.by.replace(' ', '-')}"),
+        by=words(BY[chosen.by]),
         left=chosen.untried,
     )
     rows = [_tried(each, chosen.figure, words) for each in chosen.tried]
@@ -51,21 +57,23 @@ def _chosen(chosen: ChosenModel | None, words: Words) -> list[Block]:
 
 
 def _tried(each: TriedModel, figure: str, words: Words) -> list[Text]:
+    u = each.prior_u.get(HARMONICS)
     return [
-        _model(each.extras, each.order, words),
+        _model(each.extras, each.order, each.drawn, words),
         words(f"figure.{figure}"),
         words("chosen.kept") if each.kept else (),
         own(each.parameters),
-        own("–" if each.prior_u_rad is None else f"{each.prior_u_rad:.1e}"),
+        own(uncertainty(each.lengths_u_mm)),
+        own("–" if u is None else f"{u:.1e}"),
         own(figure_mm(each.error_mm)),
-        own(figure_mm(each.worse_by_mm)),
-        own(uncertainty(each.u_worse_by_mm)),
+        own(fixed(100.0 * each.worse_by, 1)),
+        own(fixed(100.0 * each.u_worse_by, 1)),
     ]
 
 
-def _model(extras: Sequence[str], order: int | None, words: Words) -> Text:
+def _model(extras: Sequence[str], order: int | None, drawn: bool, words: Words) -> Text:
     if not extras:
-        return words("chosen.geometry")
+        return words("chosen.drawn" if drawn else "chosen.geometry")
     orders: Text = () if order is None else words("chosen.order", order=order)
     named = [joined([words(f"extra.{each}"), orders if each == HARMONICS else ()], " ") for each in extras]
     return joined(named, ", ")
