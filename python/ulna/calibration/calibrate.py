@@ -37,7 +37,9 @@ def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: A
     start = None if searched is None else searched.parameters
     if choice is not None:
         start = start_of(choice, assembled)
-    fitted = run_assembled(study, assembled, progress, start)
+    # a choice began with a fit of the geometry, which has looked for other minima where it had to
+    looked = choice is not None and start is not None
+    fitted = run_assembled(study, assembled, progress, start, search=not looked)
     extras = judge_extras(study, progress) if study.fit.extras and study.fit.judge_extras else []
     ended, seconds = datetime.now(UTC), time.perf_counter() - began
     of_choice = (asked.fit, None if choice is None else choice.model)

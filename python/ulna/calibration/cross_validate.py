@@ -134,7 +134,8 @@ def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged, list[Cause]]
         training = training if choice is None else choice.study
         assembled = assemble(training)
         start_arm = assembled.arm
-        fitted = run_assembled(training, assembled, None, None if choice is None else start_of(choice, assembled))
+        begin = None if choice is None else start_of(choice, assembled)
+        fitted = run_assembled(training, assembled, None, begin, search=begin is None)
         given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
         # signs that nobody knows are those that were found
         start = run_fit(given.with_arm(given.arm.with_signs(fitted.arm.signs)), all_but_probes)

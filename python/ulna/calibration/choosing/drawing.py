@@ -8,7 +8,6 @@ farther from its drawing shows it: u is then its own distance.
 from __future__ import annotations
 
 import dataclasses
-import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,9 +76,11 @@ def geometry_of(study: Study) -> Geometry:
         asked = _drawn(signed, u)
         own = assemble(asked)
         only = dataclasses.replace(own, hold=held)
-        fitted = run_assembled(asked, only)
+        fitted = run_assembled(asked, only, search=False)
         if fitted.rms_mm > largest:
-            fitted = min(fitted, run_assembled(asked, only, None, alone.parameters), key=lambda each: each.rms_mm)
+            fitted = min(
+                fitted, run_assembled(asked, only, None, alone.parameters, search=False), key=lambda each: each.rms_mm
+            )
         believed = fitted.rms_mm <= largest
         wider = _wider(u, names, held, (fitted if believed else alone).parameters - start)
         if wider == u or again == ROUNDS - 1:
@@ -92,14 +93,7 @@ def geometry_of(study: Study) -> Geometry:
 def _drawn(study: Study, u: dict[str, float]) -> Study:
     """With the drawing, over which goes what the study states."""
     known = {pattern: Prior(each) for pattern, each in u.items()} | study.fit.prior
-    return dataclasses.replace(near(study), fit=dataclasses.replace(near(study).fit, prior=known))
-
-
-def near(study: Study) -> Study:
-    """To be fitted from where it starts, without looking elsewhere."""
-    return dataclasses.replace(
-        study, fit=dataclasses.replace(study.fit, start="given", poor_above_mm=sys.float_info.max)
-    )
+    return dataclasses.replace(study, fit=dataclasses.replace(study.fit, start="given", prior=known))
 
 
 def _wider(u: dict[str, float], names: list[str], held: Bool, off: F64) -> dict[str, float]:

@@ -7,6 +7,7 @@ are then computed with the arm itself, nothing linear in them.
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import extra_of
-from ulna.calibration.choosing.drawing import LENGTHS, geometry_of, near
+from ulna.calibration.choosing.drawing import LENGTHS, geometry_of
 from ulna.calibration.choosing.groups import Groups
 from ulna.calibration.choosing.models import HARMONICS, asking
 from ulna.calibration.running import run_assembled
@@ -151,13 +152,13 @@ def alone_without(rows: Rows, training: Study) -> Arm:
     """The arm of a plain fit of the geometry to some of the readings, from where that to all of them ended. Raises
     UlnaInputError."""
     given = training.with_arm(training.arm.with_signs(rows.arm.signs))
-    asked = asking(near(given), [], [1])
+    asked = asking(dataclasses.replace(given, fit=dataclasses.replace(given.fit, start="given")), [], [1])
     assembled = assemble(asked)
     of_all = dict(zip(rows.arm.parameter_names, rows.alone.tolist(), strict=False))
     start = assembled.problem.parameters.copy()
     for k, name in enumerate(assembled.arm.parameter_names):
         start[k] = of_all[name]
-    fitted = run_assembled(asked, assembled, None, start)
+    fitted = run_assembled(asked, assembled, None, start, search=False)
     return assembled.arm.with_parameters(fitted.parameters[: len(assembled.arm.parameter_names)])
 
 
