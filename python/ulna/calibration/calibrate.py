@@ -6,6 +6,7 @@ import time
 from datetime import UTC, datetime
 from typing import Any
 
+from ulna.calibration.choosing.choose import choose, start_of
 from ulna.calibration.estimators import search_box
 from ulna.calibration.extras import judge_extras
 from ulna.calibration.fitted import FittedStudy
@@ -28,12 +29,20 @@ def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: A
     the study's arrays when they are first read: leave those as they are until then. Raises UlnaInputError for what
     cannot be asked (fewer observations than unknowns, a pattern that matches nothing); KeyboardInterrupt.
     """
-    study = with_options(as_study(study), **overrides)
+    asked = with_options(as_study(study), **overrides)
     began = time.perf_counter()
-    study = with_levers(study, progress)
+    asked = with_levers(asked, progress)
+    choice = choose(asked, progress) if asked.fit.auto else None
+    study = asked if choice is None else choice.study
     assembled = assemble(study)
     searched = search_box(study, assembled, progress) if study.fit.method != "lm" else None
-    fitted = run_assembled(study, assembled, progress, None if searched is None else searched.parameters)
+    start = None if searched is None else searched.parameters
+    if choice is not None:
+        start = start_of(choice, assembled)
+    # a choice began with a fit of the geometry, which has looked for other minima where it had to
+    looked = choice is not None and start is not None
+    fitted = run_assembled(study, assembled, progress, start, search=not looked)
     extras = judge_extras(study, progress) if study.fit.extras and study.fit.judge_extras else []
     ended, seconds = datetime.now(UTC), time.perf_counter() - began
-    return Result.on_demand(FittedStudy(study, assembled, fitted, searched, extras, ended, seconds).parts())
+    of_choice = (asked.fit, None if choice is None else choice.model)
+    return Result.on_demand(FittedStudy(study, assembled, fitted, searched, extras, ended, seconds, *of_choice).parts())

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ulna.calibration.about import about_cross_validation
+from ulna.calibration.choosing.choose import choose, start_of
 from ulna.calibration.coverage import Coverage, Judged
 from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.fitted import FittedStudy
@@ -123,15 +124,20 @@ def _judge(study: Study, fold: Fold) -> tuple[GroupFigures, Judged, list[Cause]]
     """Of one group left out: its figures, whether what the fit to the others states holds, and why it may not."""
     training = study.subset([~mask for mask in fold.masks])
     test = study.subset(fold.masks)
-    given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
 
     def all_but_probes(names: list[str]) -> NDArray[np.bool_]:
         held: NDArray[np.bool_] = np.array([not name.startswith("probe.") for name in names])
         return hold_mask(study, names) | held
 
     try:
+        # chosen anew: what is left out has no say in the model either
+        choice = choose(training) if training.fit.auto else None
+        training = training if choice is None else choice.study
         assembled = assemble(training)
-        start_arm, fitted = assembled.arm, run_assembled(training, assembled)
+        start_arm = assembled.arm
+        begin = None if choice is None else start_of(choice, assembled)
+        fitted = run_assembled(training, assembled, None, begin, search=begin is None)
+        given = dataclasses.replace(training, fit=dataclasses.replace(training.fit, start="given"))
         # signs that nobody knows are those that were found
         start = run_fit(given.with_arm(given.arm.with_signs(fitted.arm.signs)), all_but_probes)
     except UlnaInputError as error:

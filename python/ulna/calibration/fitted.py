@@ -19,6 +19,7 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.reading_noise import ReadingNoise, noise_of
 from ulna.arm.unknown import why_unknown
 from ulna.calibration.between_places import BetweenPlaces, between_places
+from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.estimators import Searched
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.figures import GroupErrors, by_placement, group_errors, over_all, overall_figures
@@ -31,6 +32,7 @@ from ulna.calibration.reading_scatter import reading_scatter
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, ReadingScatter, Status, Unit
 from ulna.study.assembly import Assembled
+from ulna.study.data import FitOptions
 from ulna.study.study import Study
 
 
@@ -47,6 +49,9 @@ class FittedStudy:
     when: datetime
     seconds: float
     """What it all took."""
+    asked: FitOptions | None = None
+    """What the fit was asked for, where the study's blocks were chosen."""
+    chosen: ChosenModel | None = None
 
     @property
     def arm(self) -> Arm:
@@ -78,11 +83,15 @@ class FittedStudy:
             "before": lambda: overall_figures(self.assembled.arm, self.study),
             "after": lambda: over_all(self._after),
             "without_far_off": self._without_far_off,
-            "provenance": lambda: provenance(self.study, self.when, self.seconds),
+            "provenance": lambda: provenance(self._as_asked(), self.when, self.seconds),
             "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
+            "chosen": lambda: self.chosen,
             "study": lambda: self.study,
         }
+
+    def _as_asked(self) -> Study:
+        return self.study if self.asked is None else dataclasses.replace(self.study, fit=self.asked)
 
     @cached_property
     def _arm(self) -> Arm:

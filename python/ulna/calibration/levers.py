@@ -15,6 +15,7 @@ from ulna.artefacts.orientation import target
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import F64, Progress
 from ulna.study.assembly import assemble
+from ulna.study.options import with_options
 from ulna.study.study import Study
 
 ROUNDS = 6
@@ -35,7 +36,8 @@ def with_levers(study: Study, progress: Progress | None = None) -> Study:
     if study.noise is not None or not open_ or not places:
         return study
     for _ in range(ROUNDS):
-        fitted = run_assembled(study, assemble(study), progress)
+        fitting = with_options(study, extras=[]) if study.fit.auto else study
+        fitted = run_assembled(fitting, assemble(fitting), progress)
         place_mm = _scatter([fitted.residuals(number) for number in places])
         readings, changed = list(study.readings), 1.0
         for number in open_:

@@ -22,6 +22,7 @@ from ulna.arm.given import StandsForArm
 from ulna.arm.probes import ProbeView, probe_views
 from ulna.arm.reading_noise import ReadingNoise, noise_of
 from ulna.calibration.about import about_result
+from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
@@ -54,7 +55,7 @@ RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
 FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
 """All that a result may be written to."""
 
-AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "placements")
+AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "chosen", "placements")
 """Fields that are the same in the file and in memory."""
 
 
@@ -85,6 +86,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """Readings far off the rest of their artefact's, the farthest first: see `ulna.calibration.outliers`."""
     extras: list[JudgedExtra] = field(default_factory=list)
     """Blocks beyond geometry, each judged by readings left out."""
+    chosen: ChosenModel | None = field(default_factory=lambda: None)  # no class attribute: made on demand
+    """With `extras = "auto"`: which model was chosen, and all that was tried."""
     study: Study | None = field(default_factory=lambda: None, compare=False)  # made on demand, so no class has one
     """What it was made of; None of a result that was read from a file, or sent to another process."""
 
@@ -147,6 +150,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
             fit=self.fit,
             outliers=[OutlierEntry.model_construct(None, **entry) for entry in self.outliers],
             extras=self.extras,
+            chosen=self.chosen,
             artefacts=[entry.entry() for entry in self.artefacts],
             placements=list(self.placements),
             overall=OverallEntry.model_construct(

@@ -14,6 +14,7 @@ from pydantic import Field
 from ulna.arm.joint_file import JointTable
 from ulna.arm.payload import PayloadTable
 from ulna.arm.tables import CartesianTip
+from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.coverage import Coverage
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
@@ -116,6 +117,8 @@ class ResultFile(Open):
     """Readings far off the rest, the farthest first."""
     extras: list[JudgedExtra] = Field(default_factory=list)
     """Blocks beyond geometry, each judged by readings left out."""
+    chosen: ChosenModel | None = None
+    """Where the study left the blocks to Ulna: which model was chosen, and all that was tried."""
     artefacts: list[PlacementEntry] = Field(default_factory=list)
     """Of each placement, in the order of the study."""
     artefacts_file: TableBeside | None = None

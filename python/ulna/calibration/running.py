@@ -16,6 +16,9 @@ from ulna.study.study import Study
 if TYPE_CHECKING:
     import ulna._core as _core
 
+SEARCH_STARTS = 2000
+"""From where other minima are looked for: the core's own number."""
+
 
 def run_fit(
     study: Study, hold: Callable[[list[str]], NDArray[np.bool_]] | None = None, progress: Progress | None = None
@@ -32,8 +35,10 @@ def run_assembled(
     assembled: Assembled,
     progress: Progress | None = None,
     from_parameters: NDArray[np.float64] | None = None,
+    search: bool = True,
 ) -> _core.Fitted:
-    """The same, of a study that is in the core already; from other parameters than the arm file's where given."""
+    """The same, of a study that is in the core already; from other parameters than the arm file's where given. search:
+    whether a poor minimum is left for others, which may take seconds."""
     import ulna._core as _core
 
     options = study.fit
@@ -47,6 +52,7 @@ def run_assembled(
             start=options.start,
             max_iterations=options.max_iterations,
             seed=options.seed,
+            search_starts=SEARCH_STARTS if search else 0,
             known_length_mm=options.known_length_mm,
             known_angle_rad=options.known_angle_rad,
             progress=progress,

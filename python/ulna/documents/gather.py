@@ -96,6 +96,7 @@ def gather(
         environment=environment(found.provenance, source.study),
         outliers=found.outliers,
         extras=found.extras,
+        chosen=found.chosen,
         verification=None if tested is None else verification(tested, None if named is None else named.value.file),
         laboratory=None if named is None else named.value,
         missing={},

@@ -19,7 +19,7 @@ from ulna.artefacts.readings import Readings
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.arrays import F64
 from ulna.simulation.account import account_json
-from ulna.study.data import FitOptions, Noise
+from ulna.study.data import AUTO, FitOptions, Noise
 from ulna.study.study import Study
 
 #: keys of [fit] that are said as they are, where they are not as usual
@@ -62,6 +62,8 @@ def study_toml(study: Study, counts: bool) -> str:
         lines += _table("[noise]", _noise_table(study.noise))
     usual = FitOptions()
     fit = {key: getattr(study.fit, key) for key in FIT_KEYS if getattr(study.fit, key) != getattr(usual, key)}
+    if study.fit.auto:
+        fit["extras"] = AUTO
     if fit:
         lines += _table("[fit]", fit)
     return "\n".join(lines) + "\n"

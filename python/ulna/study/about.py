@@ -59,7 +59,7 @@ def _fit(fit: FitOptions) -> list[str]:
     said = [f"holds {', '.join(fit.hold)}"] if fit.hold else ["all parameters free"]
     if fit.free != ["*"]:
         said.append(f"frees {', '.join(fit.free)}")
-    said += [f"extras {', '.join(fit.extras)}"] if fit.extras else []
+    said += [f"extras {', '.join(fit.extras)}"] if fit.extras else ["extras chosen by readings left out"] * fit.auto
     said += [f"loss {fit.loss}"] if fit.loss != "none" else []
     said += ["searches the zeros"] if fit.start == "search" else []
     said += [f"method {fit.method}"] if fit.method != "lm" else []

@@ -16,6 +16,9 @@ from ulna.ground.arrays import F64, Bool
 Loss = Literal["none", "huber", "cauchy", "tukey"]
 Method = Literal["lm", "annealing", "evolution"]
 
+AUTO = "auto"
+"""In place of a list of blocks: choose them."""
+
 
 @dataclass(frozen=True)
 class Noise:
@@ -59,7 +62,10 @@ class FitOptions:
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
     extras: list[str] = field(default_factory=list)
-    """Blocks of the model beyond geometry, by their names in `ulna.arm.effects`."""
+    """Blocks of the model beyond geometry, by their names in `ulna.arm.effects`; given as "auto" they are chosen by
+    readings left out: `auto` is then true, and there are none until they are."""
+    auto: bool = False
+    """Whether `calibrate` chooses the blocks, their orders and priors."""
     harmonics: list[int] = field(default_factory=lambda: [1, 2])
     """Orders of the encoders' harmonics, where extras ask for them."""
     prior: dict[str, Prior] = field(default_factory=dict)
@@ -87,6 +93,14 @@ class FitOptions:
     poor_above_mm: float | None = None
     """A minimum whose residuals are larger, root mean square, is poor. None: where the stated noise does not explain
     them (chi² per degree of freedom up to 3) and they are more than a thousandth of the reach."""
+
+    def __post_init__(self) -> None:
+        given: list[str] | str = self.extras
+        if given == AUTO:
+            object.__setattr__(self, "extras", [])
+            object.__setattr__(self, "auto", True)
+        elif self.extras:  # somebody has chosen
+            object.__setattr__(self, "auto", False)
 
 
 class Taken(NamedTuple):

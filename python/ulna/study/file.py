@@ -20,7 +20,7 @@ from ulna.formats.rows import Rows
 from ulna.formats.toml import check_format, read_toml
 from ulna.formats.units import Units
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
-from ulna.study.data import FitOptions, Noise, Prior, StudyData
+from ulna.study.data import AUTO, FitOptions, Noise, Prior, StudyData
 from ulna.study.options import with_options
 from ulna.study.parameters import check_patterns, remark_vain_payloads
 from ulna.study.readings.columns import Source
@@ -155,7 +155,8 @@ def _fit(table: FitTable, units: Units) -> FitOptions:
         free=list(table.free),
         loss=table.loss,
         start=table.start,
-        extras=list(table.extras),
+        extras=table.extras if isinstance(table.extras, list) else [],
+        auto=table.extras == AUTO,
         harmonics=list(table.harmonics),
         prior={pattern: prior(given) for pattern, given in table.prior.items()},
         judge_extras=table.judge_extras,

@@ -8,7 +8,7 @@ from typing import Any, TypeVar, get_args
 
 from ulna.arm.effects.effects import EXTRAS
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.data import FitOptions, Loss, Method, StudyData
+from ulna.study.data import AUTO, FitOptions, Loss, Method, StudyData
 
 #: of whole numbers: lowest and highest
 LIMITS = {"seed": (0, 2**63 - 1), "max_iterations": (0, 1_000_000), "budget": (100, 1_000_000_000)}
@@ -23,8 +23,11 @@ def with_options(study: AnyStudy, **overrides: Any) -> AnyStudy:
     for name in overrides:
         if name not in known:
             raise UlnaInputError(f"calibrate: there is no fit option '{name}'.{nearest(name, known)}")
+    if "extras" in overrides:
+        overrides.setdefault("auto", overrides["extras"] == AUTO)
     study = dataclasses.replace(study, fit=dataclasses.replace(study.fit, **overrides))
     fit = study.fit
+    _check_auto(study)
     for name, (least, most) in LIMITS.items():
         number = getattr(fit, name)
         if not least <= number <= most:
@@ -35,12 +38,17 @@ def with_options(study: AnyStudy, **overrides: Any) -> AnyStudy:
         ("start", fit.start, ("given", "search")),
         ("loss", fit.loss, get_args(Loss)),
         ("method", fit.method, get_args(Method)),
-        *(("extras", extra, EXTRAS) for extra in fit.extras),
+        *(("extras", extra, (*EXTRAS, AUTO)) for extra in fit.extras),
     ):
         if given not in choices:
             raise UlnaInputError(
                 f"{study.label}: key 'fit.{name}': {given!r}; expected {_or(choices)}.{nearest(str(given), choices)}"
             )
+    if AUTO in fit.extras:
+        raise UlnaInputError(
+            f"{study.label}: key 'fit.extras': {fit.extras}; 'auto' chooses among all of them, so it stands alone; "
+            'expected extras = "auto". Remove the brackets, or name the extras.'
+        )
     for pattern, prior in fit.prior.items():
         if not (math.isfinite(prior.u) and prior.u > 0.0):
             raise UlnaInputError(
@@ -56,6 +64,18 @@ def with_options(study: AnyStudy, **overrides: Any) -> AnyStudy:
             f"{study.label}: key 'fit.harmonics': {orders}; expected orders from 1 to 100, ascending, such as [1, 2]."
         )
     return study
+
+
+def _check_auto(study: StudyData) -> None:
+    """Raises UlnaInputError for what cannot be combined with blocks that are chosen."""
+    if not study.fit.auto:
+        return
+    if study.fit.method != "lm":
+        raise UlnaInputError(
+            f"{study.label}: key 'fit.extras': 'auto' compares models by their derivatives, but key 'fit.method' asks "
+            f"for a search without, '{study.fit.method}'; expected method \"lm\" beside it. Remove one of the two, or "
+            "name the extras."
+        )
 
 
 def _or(choices: Any) -> str:

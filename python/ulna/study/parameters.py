@@ -14,7 +14,7 @@ from ulna.arm.effects.effect import Effect
 from ulna.arm.effects.effects import EFFECTS, effect_named, extra_of, with_extras
 from ulna.ground.arrays import Bool
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.data import StudyData
+from ulna.study.data import FitOptions, StudyData
 
 
 def start_arm(study: StudyData) -> Arm:
@@ -72,6 +72,27 @@ def _is_of(effect: Effect, pattern: str) -> bool:
     return any(fnmatch.fnmatchcase(name, pattern) for name in names)
 
 
+def _of_block(pattern: str) -> bool:
+    """Whether it asks for parameters of any effect."""
+    return any(_is_of(effect, pattern) for effect in EFFECTS.values())
+
+
+def names_like(pattern: str, names: Sequence[str]) -> list[str]:
+    """Those of the names that match."""
+    return [name for name in names if fnmatch.fnmatchcase(name, pattern)]
+
+
+def without_vain(study: StudyData, names: Sequence[str]) -> FitOptions:
+    """The options without patterns of effects that match none of these names: of blocks that were not chosen."""
+
+    def kept(patterns: Sequence[str]) -> list[str]:
+        return [each for each in patterns if not _of_block(each) or names_like(each, names)]
+
+    fit = study.fit
+    prior = {pattern: fit.prior[pattern] for pattern in kept(list(fit.prior))}
+    return replace(fit, hold=kept(fit.hold), free=kept(fit.free), prior=prior)
+
+
 def priors(
     study: StudyData, names: Sequence[str], units: Sequence[str], values: Sequence[float], hold: Bool
 ) -> dict[int, tuple[float, float]]:
@@ -97,13 +118,15 @@ def check_patterns(study: StudyData) -> None:
     of_artefacts = "artefact."
 
     def known(patterns: Sequence[str]) -> list[str]:
-        return [pattern for pattern in patterns if not pattern.startswith(of_artefacts)]
+        return [each for each in patterns if not each.startswith(of_artefacts) and not (fit_auto and _of_block(each))]
+
+    fit_auto = study.fit.auto
 
     fit = replace(
         study.fit,
         free=known(study.fit.free),
         hold=known(study.fit.hold),
-        prior={pattern: prior for pattern, prior in study.fit.prior.items() if not pattern.startswith(of_artefacts)},
+        prior={pattern: study.fit.prior[pattern] for pattern in known(list(study.fit.prior))},
     )
     early = replace(study, fit=fit)
     hold_mask(early, names)

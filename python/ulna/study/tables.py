@@ -51,8 +51,9 @@ class FittedTable(Strict):
     """How residuals count that are far off: by their squares (none), or less."""
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
-    extras: list[Extra] = Field(default_factory=list)
-    """Blocks of the model beyond geometry; each is judged by readings left out."""
+    extras: list[Extra] | Literal["auto"] = Field(default_factory=list)
+    """Blocks of the model beyond geometry; each is judged by readings left out. "auto": blocks, orders of harmonics and
+    priors are chosen by readings left out."""
     harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
     """Orders of the encoders' harmonics, where extras ask for them."""
     judge_extras: bool = True

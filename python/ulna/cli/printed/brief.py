@@ -19,6 +19,7 @@ from ulna.calibration.result import Result
 from ulna.calibration.summary import Parameter
 from ulna.calibration.suspects import Suspicion
 from ulna.cli.printed.calibration import ending, equations, parameter_tables, signs_found
+from ulna.cli.printed.chosen import chosen_model
 from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.hints import what_to_try
@@ -63,6 +64,7 @@ def _well(result: Result, width: int) -> list[RenderableType]:
     )
     before += ["", figures, ""]
     after = [*signs_found(result.fit), *_open(result, width), *judged_extras(result.extras)]
+    after += chosen_model(result.chosen, all_of_it=False)
     after += [*_far_off(result, width), "", _verdict(result)]
     room = MOST_LINES - _WRITTEN - sum(_lines(part, width) for part in [*before, *after])
     return [*before, *_parameters(result.parameters, width, room), *after]

@@ -11,6 +11,7 @@ from ulna.arm.effects.effects import extra_of
 from ulna.arm.probes import ProbeView
 from ulna.calibration.result import Result
 from ulna.calibration.summary import FitSummary, Parameter
+from ulna.cli.printed.chosen import chosen_model
 from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions
@@ -48,7 +49,8 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts += ["", *parameter_tables(result.parameters), *signs_found(result.fit)]
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
-    return parts + judged_extras(result.extras) + far_off(result.outliers, result.fit)
+    parts += judged_extras(result.extras) + chosen_model(result.chosen, all_of_it=True)
+    return parts + far_off(result.outliers, result.fit)
 
 
 def ending(fit: FitSummary) -> str:

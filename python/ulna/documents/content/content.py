@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import PlacementFigures
@@ -58,6 +59,8 @@ class Content:
     outliers: list[dict[str, Any]]
     """As in a result: all of them, the farthest first."""
     extras: list[JudgedExtra]
+    chosen: ChosenModel | None
+    """Where the study left the blocks to Ulna."""
     verification: Verification | None
     """The acceptance test, where one was given."""
     laboratory: Laboratory | None

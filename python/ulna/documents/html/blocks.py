@@ -68,6 +68,7 @@ LOOKS = {
     "outliers": " tall",
     "placements": " tall",
     "extras": "",
+    "tried": " tall",
     "files": "",
 }
 

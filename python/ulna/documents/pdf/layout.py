@@ -37,6 +37,11 @@ LAYOUTS: dict[str, Layout] = {
     "extras": Layout(
         {"extra": 1.6, "quantity": 1.8, "verdict": 1.2, **_shares(1, "without", "with", "better", "u-better")}
     ),
+    "tried": Layout(
+        {"model": 2.2, "quantity": 1.6, "chosen": 0.9}
+        | _shares(1, "parameters-more", "prior-u", "left-out", "worse", "u-better"),
+        size_pt=7.5,
+    ),
     "outliers": Layout(
         {"row": 0, "file": 1.5, **_shares(1, "artefact", "placement", "probe"), "size": 0, "times": 1, "counted": 0.9},
         size_pt=7.5,

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from ulna.calibration.choosing.models import HARMONICS
+from ulna.calibration.choosing.tried import ChosenModel, TriedModel
 from ulna.calibration.extras import JudgedExtra
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table
-from ulna.ground.digits import figure_mm, uncertainty
+from ulna.ground.digits import figure_mm, fixed, uncertainty
 
+TRIED = ("model", "quantity", "chosen", "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse")
+BY = {
+    "placements": "chosen.by.placements",
+    "regions of placements": "chosen.by.regions-of-placements",
+    "regions of readings": "chosen.by.regions-of-readings",
+}
+"""What was left out together, in words."""
 COLUMNS = ("extra", "quantity", "verdict", "without", "with", "better", "u-better")
 
 
 def extras(content: Content, words: Words) -> list[Block]:
     """Nothing where none was asked for."""
+    return [*_judged(content, words), *_chosen(content.chosen, words)]
+
+
+def _judged(content: Content, words: Words) -> list[Block]:
     if not content.extras:
         return []
     rows = [_extra(each, words) for each in content.extras]
@@ -21,6 +36,47 @@ def extras(content: Content, words: Words) -> list[Block]:
         table("extras", words("section.extras"), words, COLUMNS, rows, left=3),
         Paragraph(words("extras.note"), "note"),
     ]
+
+
+def _chosen(chosen: ChosenModel | None, words: Words) -> list[Block]:
+    """What was chosen, and all that was tried."""
+    if chosen is None:
+        return []
+    if not chosen.tried:
+        return [Paragraph(words("chosen.too-few"), "note")]
+    said = words(
+        f"chosen.{chosen.ended}",
+        model=_model(chosen.extras, chosen.harmonics[-1] if chosen.harmonics else None, chosen.drawn, words),
+        models=len(chosen.tried),
+        groups=chosen.groups,
+        by=words(BY[chosen.by]),
+        left=chosen.untried,
+    )
+    rows = [_tried(each, chosen.figure, words) for each in chosen.tried]
+    return [Paragraph(said), table("tried", words("section.tried"), words, TRIED, rows, left=3)]
+
+
+def _tried(each: TriedModel, figure: str, words: Words) -> list[Text]:
+    u = each.prior_u.get(HARMONICS)
+    return [
+        _model(each.extras, each.order, each.drawn, words),
+        words(f"figure.{figure}"),
+        words("chosen.kept") if each.kept else (),
+        own(each.parameters),
+        own(uncertainty(each.lengths_u_mm)),
+        own("–" if u is None else f"{u:.1e}"),
+        own(figure_mm(each.error_mm)),
+        own(fixed(100.0 * each.worse_by, 1)),
+        own(fixed(100.0 * each.u_worse_by, 1)),
+    ]
+
+
+def _model(extras: Sequence[str], order: int | None, drawn: bool, words: Words) -> Text:
+    if not extras:
+        return words("chosen.drawn" if drawn else "chosen.geometry")
+    orders: Text = () if order is None else words("chosen.order", order=order)
+    named = [joined([words(f"extra.{each}"), orders if each == HARMONICS else ()], " ") for each in extras]
+    return joined(named, ", ")
 
 
 def _extra(each: JudgedExtra, words: Words) -> list[Text]:

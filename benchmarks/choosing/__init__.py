@@ -1,0 +1,1 @@
+"""Models that choose themselves against models chosen by hand, on real readings: ``python -m benchmarks.choosing``."""

@@ -1,0 +1,1 @@
+"""A model that chooses itself: `[fit] extras = "auto"`. `choose` is the door."""
