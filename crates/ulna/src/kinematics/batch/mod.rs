@@ -1,6 +1,7 @@
 //! The forward map and its derivatives over many readings at once: columns of numbers, in SIMD lanes.
 
 mod compliance;
+mod effects;
 mod kernel;
 mod sweep;
 mod turned;
