@@ -49,6 +49,8 @@ class Arm:
         tips_mm: F64,  # (P, 3)
         full_last_link: bool = False,  # then the last joint has a link too
     ) -> None: ...
+    def with_slides(self, slides_mm: F64) -> Arm:
+        """The same arm with joints that slide, (n,) how far from zero at the most, mm; NaN of those that turn."""
     def with_effects(
         self,
         effects: Sequence[tuple[str, Mapping[str, ArrayLike]]],  # kind, and its arrays by name

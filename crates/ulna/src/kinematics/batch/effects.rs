@@ -2,15 +2,13 @@
 //! stay small.
 
 use super::compliance;
-use super::kernel::{Layout, carry, place, region, through};
+use super::steps::{EFFECT_SLOTS, Layout, carry, place, region, through};
 use crate::kinematics::chain::Chain;
 use crate::kinematics::poses::{EncoderOf, Poses};
 use crate::simd::Lanes;
 use pulp::{NullaryFnOnce, Simd};
 
-/// Vectors remembered for each joint beside those of the plain map: warmth and stretch of the link, and the offset along
-/// the axis.
-pub(super) const EFFECT_SLOTS: usize = 3;
+/// Which of the vectors remembered for each joint is what.
 const WARMTH: usize = 0;
 const STRETCH: usize = 1;
 const ALONG: usize = 2;

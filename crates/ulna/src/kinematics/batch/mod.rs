@@ -3,6 +3,7 @@
 mod compliance;
 mod effects;
 mod kernel;
+mod steps;
 mod sweep;
 mod turned;
 
