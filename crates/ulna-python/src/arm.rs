@@ -70,6 +70,12 @@ impl Arm {
         Ok(Arm { inner: self.inner.with_effects(effects).map_err(raise)? })
     }
 
+    /// Of each joint how far it slides at the most, mm; NaN of one that turns.
+    fn with_slides(&self, slides_mm: PyReadonlyArray1<'_, f64>) -> PyResult<Arm> {
+        let slides_mm: Vec<Option<f64>> = slice(&slides_mm).iter().map(|&mm| (!mm.is_nan()).then_some(mm)).collect();
+        Ok(Arm { inner: self.inner.with_slides(&slides_mm).map_err(raise)? })
+    }
+
     #[getter]
     fn joints(&self) -> usize {
         self.inner.encoders()

@@ -8,6 +8,7 @@ What an arm does beyond its geometry is in `ulna.arm.effects.effects`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -87,6 +88,8 @@ class ArmData:
                 np.array([probe.tip_mm for probe in self.probes.values()]).reshape(-1, 3),
                 self.full_last_link,
             )
+            if self.slides.any():
+                arm = arm.with_slides(np.array([_travel_mm(joint) for joint in self.joints]))
             return arm.with_effects(effects.for_core(self._effects, self.gravity, self.heaviest_kg))
         except _core.UlnaError as error:
             raise UlnaInputError(f"arm '{self.name}': {error}") from None
@@ -111,6 +114,23 @@ class ArmData:
     def signs(self) -> F64:
         """(n,) +1 or -1; +1 where not known."""
         return self.core.signs
+
+    @property
+    def slides(self) -> Bool:
+        """(n,) true for prismatic joints: what stands for their encoder's angle is mm."""
+        return np.array([joint.slides for joint in self.joints])
+
+    def each(self, rad: float, mm: float) -> F64:
+        """(n,) a number for each encoder: one for those of joints that turn, another for those of joints that slide."""
+        return np.where(self.slides, mm, rad)
+
+    def check_turns(self, label: object, what: str) -> None:
+        """All its joints turn, as `what` ("plans") need it. label: of the file. Raises UlnaInputError."""
+        if self.slides.any():
+            raise UlnaInputError(
+                f"{label}: joint {int(np.argmax(self.slides)) + 1} of arm '{self.name}' is prismatic, which {what} do "
+                "not cover; expected an arm whose joints all turn. Name another arm."
+            )
 
     @property
     def unknown_signs(self) -> Bool:
@@ -307,3 +327,9 @@ class ArmData:
         if q.ndim != 2 or q.shape[1] != self.n:
             raise ValueError(f"q_rad: expected (N, {self.n}) encoder angles in rad, got {np.shape(q_rad)}")
         return q, single
+
+
+def _travel_mm(joint: Joint) -> float:
+    """How far a prismatic joint slides from its encoder's zero at the most; NaN of one that turns."""
+    low, high = joint.limits_rad or (math.nan, math.nan)
+    return max(-low, high) if joint.slides else math.nan

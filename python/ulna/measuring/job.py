@@ -73,7 +73,7 @@ class MeasureJob:
             else read_header(readings, WHAT_READINGS, layout, known)
         )
         self._angle = angle
-        self._rad_per = rad_per(self.arm, angle)
+        self._rad_per = rad_per(self.arm, angle, self.header)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
         asked = [column for column in map(self.header.find, unused) if column is not None]
@@ -184,7 +184,7 @@ class MeasureJob:
 
     def _angles(self, piece: Piece) -> F64:
         q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
-        q_rad = q if self._angle == "rad" else q * self._rad_per
+        q_rad = q if (self._rad_per == 1.0).all() else q * self._rad_per
         row = np.arange(piece.before + 1, piece.before + len(q) + 1)
         check_scale(q_rad, "q", self.arm, self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
         self._outside.add(q_rad, row)

@@ -40,7 +40,7 @@ def load_simulation(path: Path) -> Simulation:
         touching=touching,
         seed=file.seed,
         drawing=_drawing(file.drawing, units),
-        encoder_rad=None if encoder is None else encoder_of(encoder, arm, path) * units.rad,
+        encoder_rad=None if encoder is None else encoder_of(encoder, arm, units, path),
         seat_mm=file.noise.seat * units.mm,
         quantised=file.noise.quantise,
         travel_rad=travel_of(file.travel, arm, units, path),

@@ -11,6 +11,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.payload import joined_payloads, payloads_of
+from ulna.arm.stated import check_alike
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import check_kinds, made
 from ulna.artefacts.readings import InputFile, Readings
@@ -127,13 +128,14 @@ def noise_of_table(table: NoiseTable | None, units: Units, arm: Arm, path: Path)
         return None
     encoder_rad = None
     if table.encoder is not None:
+        check_alike(not isinstance(table.encoder, list), arm, "noise.encoder", path, "in the unit of lengths")
         each = table.encoder if isinstance(table.encoder, list) else [table.encoder] * arm.n
         if len(each) != arm.n:
             raise UlnaInputError(
                 f"{path}: key 'noise.encoder': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
                 f"'{arm.name}'. Correct it."
             )
-        encoder_rad = np.array(each) * units.rad
+        encoder_rad = np.array(each) * arm.each(units.rad, units.mm)
     return Noise(encoder_rad, None if table.seat is None else table.seat * units.mm)
 
 

@@ -91,7 +91,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True, True))
     _check_angles(header, arm)
     entry["angle"] = entry.get("angle") or asked.angle or _angle(header, arm)
-    length_unit = _length_unit(header, asked.length_unit)
+    length_unit = _length_unit(header, asked.length_unit, arm)
     source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, None, table)
     parts, used = read_readings(source, arm, found, _units(length_unit), remarks, asked.rows)
     files.append(used)
@@ -137,7 +137,10 @@ def _check_angles(header: Header, arm: Arm) -> None:
 
 def _angle(header: Header, arm: Arm) -> str:
     """The unit that the columns' names say. Raises UlnaInputError where they say none, or several."""
-    said = {ANGLES.unit(header.units.get(header.own(f"q{k + 1}"), "")) for k in range(arm.n)}
+    turning = np.flatnonzero(~arm.slides).tolist()
+    said = {ANGLES.unit(header.units.get(header.own(f"q{k + 1}"), "")) for k in turning}
+    if not turning:
+        return "rad"
     if len(said) == 1 and None not in said:
         return str(said.pop())
     words = "is not stated, and never guessed" if said <= {None} else "is not the same in all columns' names"
@@ -147,9 +150,10 @@ def _angle(header: Header, arm: Arm) -> str:
     )
 
 
-def _length_unit(header: Header, stated: str | None) -> str | None:
+def _length_unit(header: Header, stated: str | None, arm: Arm) -> str | None:
     """The unit of lengths in the frame. Raises UlnaInputError where it has some and nobody says their unit."""
-    there = [column for column in header.columns if is_length(column)]
+    slid = [f"{letter}{k + 1}" for letter in "qp" for k in np.flatnonzero(arm.slides)]
+    there = [column for column in header.columns if is_length(column) or column in slid]
     said = {column: header.units.get(header.own(column), stated) for column in there}
     for column, unit in said.items():
         if unit is None:

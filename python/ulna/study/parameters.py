@@ -48,9 +48,15 @@ def hold_mask(study: StudyData, names: Sequence[str]) -> Bool:
     for value, patterns, key in ((True, study.fit.free, "fit.free"), (False, study.fit.hold, "fit.hold")):
         for pattern in patterns:
             free[matching(study, pattern, names, key)] = value
-    asked = [extra_of(name) in (None, *study.fit.extras) for name in names]
+    asked = [extra_of(name) in (None, *study.fit.extras) and not _of_no_turn(study, name) for name in names]
     hold: Bool = ~(free & np.array(asked, dtype=bool))
     return hold
+
+
+def _of_no_turn(study: StudyData, name: str) -> bool:
+    """Whether a parameter is of what only joints do that turn, and its joint slides."""
+    extra = extra_of(name)
+    return extra is not None and EFFECTS[extra].of_turn and study.arm.joints[int(name.split(".")[1]) - 1].slides
 
 
 def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> Bool:

@@ -22,6 +22,8 @@ pub enum Cause {
     ParallelAxes,
     /// The last link and the tip say the same thing twice.
     RedundantLink,
+    /// Of an axis along which a joint slides only the direction matters.
+    SlidingAxis,
     /// An effect had no chance to show: one of its own words.
     OfEffect(&'static str),
     /// It moves the tip, but not in what was read.
@@ -39,6 +41,7 @@ impl Cause {
             Cause::JointStill => "joint-still",
             Cause::ParallelAxes => "parallel-axes",
             Cause::RedundantLink => "redundant-link",
+            Cause::SlidingAxis => "sliding-axis",
             Cause::OfEffect(cause) => cause,
             Cause::Coverage => "coverage",
         }
@@ -245,6 +248,9 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
             remedy: "measure with a probe at least 10 mm off the last axis, or with a second straight probe of another length".into(),
         });
     }
+    if let Some(because) = sliding_axis(takes_part, arm) {
+        return Some(because);
+    }
     for (i, joint) in arm.joints().iter().enumerate() {
         let parallel = joint.model == JointModel::Dh && joint.alpha_rad.sin().abs() < PARALLEL_RAD;
         if parallel && takes_part.contains(&(4 * i + 3)) {
@@ -269,8 +275,34 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
     })
 }
 
+/// What is said where parameters around a joint that slides move nothing together.
+fn sliding_axis(takes_part: &[usize], arm: &Arm) -> Option<Because> {
+    let (last, geometry) = (arm.encoders() - 1, arm.geometry_count());
+    let around = |i: usize| {
+        takes_part.iter().all(|&j| match arm.joint_of(j) {
+            Some(joint) => j < geometry && joint.abs_diff(i) <= 1,
+            // the tip stands for the last joint's link
+            None => j < geometry && last <= i + 1,
+        })
+    };
+    let i = (0..=last).find(|&i| arm.slides(i) && around(i))?;
+    let name = i + 1;
+    let hold = if i == last { format!("joint {i}'s a and d") } else { format!("joint.{name}.a and joint.{name}.d") };
+    Some(Because {
+        cause: Cause::SlidingAxis,
+        because: format!(
+            "joint {name} slides: of its axis only the direction matters, and where it lies is said by the links beside it \
+             as well"
+        ),
+        remedy: format!("none is needed, no point depends on it; or hold {hold}"),
+    })
+}
+
 /// Whether a probe's tip does not move when the last joint turns.
 fn on_last_axis(arm: &Arm, probe: usize) -> bool {
+    if arm.slides(arm.encoders() - 1) {
+        return false;
+    }
     let tip = Vector3::from(arm.probes()[probe].tip_mm);
     let q_rad: Vec<f64> = vec![0.0; arm.encoders()];
     let frames = crate::kinematics::frames(arm, &q_rad);

@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What a file says of many poses.
+/// What a file says of many poses. Of an encoder whose joint slides the "angles" are mm.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Angles<'a> {
     /// Row-major encoder angles, rad.
@@ -133,6 +133,9 @@ impl Poses {
         k: usize,
     ) -> (Lanes<S>, Lanes<S>) {
         let c = |value: f64| Lanes::splat(simd, value);
+        if link.slides {
+            return (c(-link.sin_theta0), c(link.cos_theta0));
+        }
         match &self.sin_cos {
             Some(kept) => {
                 let sin_q = kept.load(simd, i, k) * c(link.sign);
@@ -144,6 +147,16 @@ impl Poses {
                 let q = self.q_rad.load(simd, i, k);
                 q.mul_add(c(link.sign), c(-link.theta0)).sin_cos()
             }
+        }
+    }
+
+    /// Offset along the axis of joint `i` for vector `k` of poses: `d`, and what slides, mm.
+    #[inline(always)]
+    pub(in crate::kinematics) fn along<S: Simd>(&self, simd: S, link: &Link, i: usize, k: usize) -> Lanes<S> {
+        let d = Lanes::splat(simd, link.d);
+        match link.slides {
+            false => d,
+            true => self.q_rad.load(simd, i, k).mul_add(Lanes::splat(simd, link.sign), d),
         }
     }
 

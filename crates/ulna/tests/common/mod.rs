@@ -34,6 +34,15 @@ pub fn any_full_arm(rng: &mut Xoshiro256PlusPlus, n: usize) -> Arm {
     Arm::with_full_last_link(joints, probes).unwrap()
 }
 
+/// The same arm with some of its joints sliding, those of Hayati turning as before; none of them coupled.
+pub fn sliding(arm: &Arm, rng: &mut Xoshiro256PlusPlus) -> Arm {
+    let hayati = |i: usize| arm.joints().get(i).is_some_and(|joint| joint.model == JointModel::Hayati);
+    let each = (0..arm.encoders()).map(|i| (!hayati(i) && rng.random()).then_some(300.0));
+    let slides: Vec<Option<f64>> = each.collect();
+    let effects = Effects { coupling: None, ..arm.effects().clone() };
+    arm.with_effects(effects).unwrap().with_slides(&slides).unwrap()
+}
+
 /// The assumed truth of Cheng 2011, Table 2, with these probes.
 pub fn cheng_2011(probes: &[(&str, [f64; 3])]) -> Arm {
     let rows = [

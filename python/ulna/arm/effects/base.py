@@ -43,6 +43,7 @@ class _OfBase(Effect):
     """What both do alike: two numbers of the first joint."""
 
     of_first = True
+    of_turn = False
     field: ClassVar[str]
     """Of what a joint has of it."""
     key: ClassVar[str]

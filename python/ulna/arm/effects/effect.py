@@ -42,6 +42,8 @@ class Effect(ABC):
     """Standard uncertainty of a parameter where the study states none; None: nothing is known beforehand."""
     of_first: ClassVar[bool] = False
     """Whether only the first joint has it: where the arm stands, of which no length depends."""
+    of_turn: ClassVar[bool] = True
+    """Whether only a joint that turns has it; one that slides has none of its parameters."""
     needs: ClassVar[Condition | None] = None
     """On which condition of a pose it depends."""
     whose: ClassVar[str] = "joints"

@@ -38,6 +38,7 @@ class Expansion(Effect):
     suffixes, examples = ("expansion",), ("expansion",)
     unit, drawn = "1/K", 3e-5  # no engineering material grows by more
     needs = TEMPERATURE
+    of_turn = False
     whose, does = "links", "grow with temperature"
     words = "the growth of its links with temperature"
     causes = MappingProxyType({"temperature-still": "a temperature that does not change"})

@@ -174,10 +174,11 @@ def angles(frame: pl.DataFrame, letter: str, factors: F64) -> F64:
 
 
 def angle_factors(source: Source, arm: Arm, units: Units) -> F64:
-    """(n,) rad in one unit of the file."""
+    """(n,) rad in one unit of the file; of prismatic joints mm in one of its units of length."""
     unit = source.entry.angle or units.angle
     if unit != "counts":
-        return np.full(arm.n, RAD_PER[unit])
+        return arm.each(RAD_PER[unit], units.mm)
+    arm.check_turns(f"{source.study}: key '{source.key}.angle'", "readings in counts")
     for k, joint in enumerate(arm.joints, start=1):
         if joint.counts_per_turn is None:
             raise UlnaInputError(

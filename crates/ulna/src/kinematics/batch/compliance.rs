@@ -78,7 +78,9 @@ pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses:
         [x, y, z] = before_tilts(simd, link, [x, y, z], region, slot + BODY);
         if !link.bare {
             x = mass.mul_add(c(link.a), x);
-            z = mass.mul_add(c(link.d), z);
+            z = mass.mul_add(poses.along(simd, link, i, k), z);
+        } else if link.slides {
+            z = mass.mul_add(poses.along(simd, link, i, k), z);
         }
         let (sin, cos) = poses.turn(simd, link, i, k);
         sin.store(region, slot + SIN);
@@ -118,7 +120,8 @@ pub(super) fn weigh<S: Simd>(region: &mut [f64], i: usize, weight: Lanes<S>) {
     weight.store(region, i * SLOTS + WEIGHT);
 }
 
-/// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn, alpha, a and d or beta.
+/// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn (of a bare last joint that slides:
+/// its shift), alpha, a and d or beta.
 #[inline(always)]
 pub(super) fn derivatives<S: Simd>(
     simd: S,
@@ -159,11 +162,11 @@ pub(super) fn derivatives<S: Simd>(
         let turn = x.mul_add(hy, -(y * hx)) + turned_x.mul_add(gy, -(turned_y * gx));
         hx = gy.mul_add(w, hx);
         hy = gx.neg_mul_add(w, hy);
+        let mass = load_kg + c(carried.masses[i]);
         if link.bare {
-            each(i, [turn, zero, zero, zero]);
+            each(i, [if link.slides { hz * mass } else { turn }, zero, zero, zero]);
             continue;
         }
-        let mass = load_kg + c(carried.masses[i]);
         let (z, link_z) = (at(BODY + 2), at(TANGENT + 2));
         let alpha = hz.mul_add(y, -(hy * z)) + gz.mul_add(link_y, -(gy * link_z));
         let (a, d) = (hx * mass, hz * mass);
