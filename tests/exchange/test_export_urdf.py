@@ -112,12 +112,12 @@ def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
     assert read_source(FOSSILS / "arm-1.toml", "a URDF", has_base=True).remarks == []
     document = json.loads((FOSSILS / "result-1.json").read_text())
     document["fit"] |= {"converged": False, "termination": "poor-minimum"}
-    document["parameters"] = [row for row in document["parameters"] if row["name"] != "joint.1.d"]
     (tmp_path / "result.json").write_text(json.dumps(document))
-    failed, _ = read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks
+    failed = read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks[0]
     says(failed, "result.json: the fit did not converge (poor-minimum)", "do not use these numbers")
     (tmp_path / "result.json").write_text(json.dumps(document | {"fit": 1, "parameters": [2, {"status": 3}]}))
-    assert read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks == []
+    with pytest.raises(UlnaInputError, match="key 'parameters'"):
+        read_source(tmp_path / "result.json", "a URDF", has_base=True)
 
 
 def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
