@@ -15,7 +15,7 @@ import polars as pl
 import pytest
 from tests.cli_runs import assert_bad_input, platinum, run, write_lengths
 
-from ulna.ground.extras import EXTRAS, lacking, need
+from ulna.ground.extras import EXTRAS, PACKAGES, lacking, need
 
 LACKING = [package for packages in EXTRAS.values() for package in packages]
 #: Python without those packages: None in sys.modules is what the import system knows as "not there"
@@ -137,7 +137,7 @@ def test_the_extras_are_those_of_the_project(root: Path) -> None:
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     for extra, packages in EXTRAS.items():
         named = {re.split(r"[^\w-]", each)[0].lower() for each in project["optional-dependencies"][extra]}
-        assert named == {package.lower() for package in packages}
+        assert named == {PACKAGES.get(package, package).lower() for package in packages}
     base = {re.split(r"[^\w-]", each)[0].lower().replace("-", "_") for each in project["dependencies"]}
     assert base.isdisjoint({package.lower() for package in LACKING})
 

@@ -14,6 +14,7 @@ from ulna.calibration.levers import with_levers
 from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import Progress
+from ulna.ground.extras import need
 from ulna.study.assembly import assemble
 from ulna.study.given import StudyLike, as_study
 from ulna.study.options import with_options
@@ -31,6 +32,8 @@ def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: A
     """
     asked = with_options(as_study(study), **overrides)
     began = time.perf_counter()
+    if asked.fit.judge:
+        need(f"{asked.label}: key 'fit.judge'", "sklearn")
     asked = with_levers(asked, progress)
     choice = choose(asked, progress) if asked.fit.auto else None
     study = asked if choice is None else choice.study

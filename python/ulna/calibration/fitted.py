@@ -29,6 +29,7 @@ from ulna.calibration.placements import Figures
 from ulna.calibration.poses import PlacementPose, placement_poses
 from ulna.calibration.provenance import provenance, stated_noise
 from ulna.calibration.reading_scatter import reading_scatter
+from ulna.calibration.residual_map import ResidualMap, residual_map
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.summary import FitSummary, Parameter, ReadingScatter, Status, Unit
 from ulna.study.assembly import Assembled
@@ -87,8 +88,12 @@ class FittedStudy:
             "outliers": lambda: outliers(self._residuals, self.study.files) if self._any_outliers() else [],
             "extras": lambda: self.extras,
             "chosen": lambda: self.chosen,
+            "residual_map": self._residual_map,
             "study": lambda: self.study,
         }
+
+    def _residual_map(self) -> ResidualMap | None:
+        return residual_map(self.study, self._arm, self.core) if self.study.fit.judge else None
 
     def _as_asked(self) -> Study:
         return self.study if self.asked is None else dataclasses.replace(self.study, fit=self.asked)

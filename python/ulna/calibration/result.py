@@ -29,6 +29,7 @@ from ulna.calibration.placements import SCHEMA as PLACEMENT_SCHEMA
 from ulna.calibration.placements import FigureEntry, Figures, PlacementFigures, Placements, figures_of
 from ulna.calibration.plots import Plots
 from ulna.calibration.poses import PlacementPose
+from ulna.calibration.residual_map import ResidualMap
 from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
 from ulna.calibration.summary import FitSummary, Parameter
 from ulna.formats.models import fill_json
@@ -55,7 +56,7 @@ RESIDUALS, PLACEMENTS = "residuals.parquet", "artefacts.parquet"
 FILES = ("result.json", "arm.toml", "residuals.csv", RESIDUALS, PLACEMENTS)
 """All that a result may be written to."""
 
-AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "chosen", "placements")
+AS_THEY_STAND = ("parameters", "identifiability", "fit", "extras", "chosen", "residual_map", "placements")
 """Fields that are the same in the file and in memory."""
 
 
@@ -88,6 +89,8 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
     """Blocks beyond geometry, each judged by readings left out."""
     chosen: ChosenModel | None = field(default_factory=lambda: None)  # no class attribute: made on demand
     """With `extras = "auto"`: which model was chosen, and all that was tried."""
+    residual_map: ResidualMap | None = field(default_factory=lambda: None)  # no class attribute: made on demand
+    """With `judge`: whether residuals still follow the turn of a joint."""
     study: Study | None = field(default_factory=lambda: None, compare=False)  # made on demand, so no class has one
     """What it was made of; None of a result that was read from a file, or sent to another process."""
 
@@ -151,6 +154,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
             outliers=[OutlierEntry.model_construct(None, **entry) for entry in self.outliers],
             extras=self.extras,
             chosen=self.chosen,
+            residual_map=self.residual_map,
             artefacts=[entry.entry() for entry in self.artefacts],
             placements=list(self.placements),
             overall=OverallEntry.model_construct(

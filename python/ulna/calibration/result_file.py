@@ -20,6 +20,7 @@ from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import FigureEntry, PlacementEntry
 from ulna.calibration.poses import PlacementPose
+from ulna.calibration.residual_map import ResidualMap
 from ulna.calibration.residuals import ReadingEntry, ResidualEntry
 from ulna.calibration.summary import FitSummary, GroupFigures, Parameter
 from ulna.formats.models import Open
@@ -119,6 +120,8 @@ class ResultFile(Open):
     """Blocks beyond geometry, each judged by readings left out."""
     chosen: ChosenModel | None = None
     """Where the study left the blocks to Ulna: which model was chosen, and all that was tried."""
+    residual_map: ResidualMap | None = None
+    """Where the study asked for it: whether residuals still follow the turn of a joint."""
     artefacts: list[PlacementEntry] = Field(default_factory=list)
     """Of each placement, in the order of the study."""
     artefacts_file: TableBeside | None = None

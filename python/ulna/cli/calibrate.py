@@ -6,13 +6,18 @@ import sys
 
 import typer
 
-from ulna.cli.options import All, Force, Json, OutFolder, StudyArgument
+from ulna.cli.options import All, Force, Json, Judge, OutFolder, StudyArgument
 from ulna.cli.running import guard
 
 
 @guard
 def calibrate(
-    study: StudyArgument, out: OutFolder = None, force: Force = False, as_json: Json = False, everything: All = False
+    study: StudyArgument,
+    out: OutFolder = None,
+    force: Force = False,
+    as_json: Json = False,
+    everything: All = False,
+    judge: Judge = False,
 ) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
@@ -20,8 +25,8 @@ def calibrate(
     not determine, whether blocks beyond geometry earned their place, and readings far off, on one screen; with --all
     every figure and parameter, why something was not determined, and what would help. Of a fit that ended badly: the
     rows that are met worst, and what to try. With -o it writes result.json, arm.toml (the calibrated arm, ready to
-    use) and residuals.csv (residuals.parquet of more than 20 000 readings). Exit code 1 where the fit did not
-    converge.
+    use) and residuals.csv (residuals.parquet of more than 20 000 readings). With --judge it says whether residuals
+    still follow the turn of a joint, so that a block is missing. Exit code 1 where the fit did not converge.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
@@ -33,15 +38,18 @@ def calibrate(
     from ulna.cli.printed.calibration import calibration_report
     from ulna.cli.printed.hints import where_to_look
     from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.extras import need
     from ulna.study.study import Study
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
     loaded = Study.load(study)
+    if judge:
+        need("option --judge", "sklearn")
     if out is not None:
         refuse_inputs((out / name for name in FILES), (file.path for file in loaded.files))
     with output.progress_bar() as progress:
-        result = run_calibration(loaded, progress)
+        result = run_calibration(loaded, progress, **({"judge": True} if judge else {}))
     if out is not None:
         result.save(out, force)
     suspected = None if result.fit.converged else suspicion(loaded, result)

@@ -25,6 +25,7 @@ Keep = Annotated[
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite earlier results; never an input.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form on stdout.")]
+Judge = Annotated[bool, typer.Option("--judge", help="Say whether residuals still follow the turn of a joint.")]
 All = Annotated[bool, typer.Option("--all", help="Print all there is, not just one screen of it.")]
 
 

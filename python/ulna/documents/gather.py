@@ -97,6 +97,7 @@ def gather(
         outliers=found.outliers,
         extras=found.extras,
         chosen=found.chosen,
+        residual_map=found.residual_map,
         verification=None if tested is None else verification(tested, None if named is None else named.value.file),
         laboratory=None if named is None else named.value,
         missing={},

@@ -14,9 +14,13 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "reports": ("matplotlib", "typst", "fontTools"),
     "tables": ("pyarrow", "h5py"),
     "search": ("scipy",),
+    "judge": ("sklearn",),
     "dask": ("distributed",),
 }
 """Extra, as in pyproject.toml → what is imported of it."""
+
+PACKAGES = {"sklearn": "scikit-learn"}
+"""What is imported → the package that it is in, where that has another name."""
 
 
 def installed(package: str) -> bool:
@@ -36,8 +40,9 @@ def lacking(module: str) -> str | None:
     package = module.split(".")[0]
     for extra, packages in EXTRAS.items():
         if package in packages:
+            named = PACKAGES.get(package, package)
             return (
-                f"the package {package} is not installed; expected it, as Ulna's extra '{extra}' brings it. "
+                f"the package {named} is not installed; expected it, as Ulna's extra '{extra}' brings it. "
                 f'Run: pip install "ulna[{extra}]"'
             )
     return None

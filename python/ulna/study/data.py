@@ -72,6 +72,8 @@ class FitOptions:
     """Shell-style patterns over parameter names; where several match, the last one holds."""
     judge_extras: bool = True
     """Whether extras are judged by cross-validation, refitting without each."""
+    judge: bool = False
+    """Whether it is judged if residuals still follow the turn of a joint: a map of them, by the extra `judge`."""
     method: Method = "lm"
     """"annealing", "evolution": the box around the start is searched without derivatives, and what it finds is finished
     by "lm"."""

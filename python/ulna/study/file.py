@@ -162,6 +162,7 @@ def _fit(table: FitTable, units: Units) -> FitOptions:
         harmonics=list(table.harmonics),
         prior={pattern: prior(given) for pattern, given in table.prior.items()},
         judge_extras=table.judge_extras,
+        judge=table.judge,
         method=table.method,
         budget=table.budget,
         box_length_mm=mm(table.box_length, usual.box_length_mm),

@@ -66,6 +66,8 @@ class FitTable(FittedTable):
     prior: dict[str, PriorValue] = Field(default_factory=dict)
     """Pattern of parameter names = standard deviation around the arm file's value, or { value, u }, in the study's
     units."""
+    judge: bool = False
+    """Whether a map of the residuals says if they still follow the turn of a joint; needs Ulna's extra `judge`."""
     method: Method = "lm"
     """"annealing" or "evolution": first a search of a box around the start without derivatives."""
     budget: Annotated[int, Field(ge=100, le=1_000_000_000)] = 100_000

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.effects.effects import EFFECTS
-from ulna.calibration.choosing.drawing import LENGTHS
+from ulna.calibration.choosing.drawing import LENGTHS, alone_of
 from ulna.calibration.choosing.groups import groups_of, thinned, whole
 from ulna.calibration.choosing.models import HARMONICS, LADDER, Model, allowed, asking
 from ulna.calibration.choosing.rows import Rows, rows_of
@@ -49,7 +49,8 @@ def choose(study: Study, progress: Progress | None = None) -> Choice:
     )
     told.impossible.update(impossible)
     if groups is not None:
-        rows = rows_of(groups, blocks, range(1, LADDER[-1] + 1))
+        near = alone_of(asking(few, [], [1]))
+        rows = rows_of(groups, blocks, range(1, LADDER[-1] + 1), near)
         tried, left = try_all(groups, rows, blocks, _stated(study, rows, blocks), progress)
         figure, errors = errors_of(tried)
         if figure:
@@ -70,7 +71,7 @@ def choose(study: Study, progress: Progress | None = None) -> Choice:
                 untried=left,
             )
             # of the readings as they stand: what parts of a placement say of a width is less
-            of_all = rows_of(whole(few), model.blocks, range(1, max(model.order, 1) + 1))
+            of_all = rows_of(whole(few), model.blocks, range(1, max(model.order, 1) + 1), near)
             known = known_of(of_all, model)
             return Choice(_study(study, of_all, model, known), told, _start(of_all, known) if model.drawn else {})
     return Choice(asking(study, [], [1]), dataclasses.replace(told, seconds=time.perf_counter() - began), {})

@@ -8,6 +8,7 @@ farther from its drawing shows it: u is then its own distance.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,12 +57,22 @@ class Geometry:
     """Parameter → value and standard deviation before any reading, blocks' too."""
 
 
-def geometry_of(study: Study) -> Geometry:
-    """study: asks for all blocks that will be tried. Raises UlnaInputError."""
+def alone_of(study: Study) -> dict[str, float]:
+    """Parameters by name where the plain fit ends, other minima looked for where it has to; of an arm whose signs are
+    not known none: they are found with them. study: asks for no blocks. Raises UlnaInputError."""
+    if study.arm.unknown_signs.any():
+        return {}
+    assembled = assemble(study)
+    return dict(zip(assembled.names, run_assembled(study, assembled).parameters.tolist(), strict=True))
+
+
+def geometry_of(study: Study, near: Mapping[str, float]) -> Geometry:
+    """study: asks for all blocks that will be tried; near: where the plain fit ends, for readings that are parted as
+    well. Raises UlnaInputError."""
     assembled = assemble(study)
     names = assembled.names
     held = assembled.hold | np.array([extra_of(name) is not None for name in names])
-    alone = run_assembled(study, dataclasses.replace(assembled, hold=held))
+    alone = _alone(study, dataclasses.replace(assembled, hold=held), near)
     signed = study.with_arm(study.arm.with_signs(alone.arm.signs))
     # nobody knows offsets that are searched for
     unknown = {OFFSETS} if study.fit.start == "search" or study.arm.unknown_signs.any() else set[str]()
@@ -88,6 +99,15 @@ def geometry_of(study: Study) -> Geometry:
         u = wider
     known = priors(asked, names, own.units, start.tolist(), own.hold)
     return Geometry(asked, own, alone, fitted, u, known)
+
+
+def _alone(study: Study, assembled: Assembled, near: Mapping[str, float]) -> _core.Fitted:
+    if not near:
+        return run_assembled(study, assembled)
+    start = assembled.problem.parameters.tolist()
+    begin = np.array([near.get(name, value) for name, value in zip(assembled.names, start, strict=True)])
+    given = dataclasses.replace(study, fit=dataclasses.replace(study.fit, start="given"))
+    return run_assembled(given, assembled, None, begin, search=False)
 
 
 def _drawn(study: Study, u: dict[str, float]) -> Study:

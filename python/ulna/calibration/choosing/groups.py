@@ -18,6 +18,7 @@ from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.study.study import Study
 
+BY_PLACEMENTS, BY_REGIONS, BY_READINGS = "placements", "regions of placements", "regions of readings"
 FEWEST_PLACES = 5
 """Of fewer placements one left out takes too much of the volume with it: what is left says little of another."""
 MOST_PLACES = 10
@@ -48,26 +49,34 @@ class Groups:
 
 def groups_of(study: Study) -> Groups | None:
     """None where there are too few readings to leave some out."""
+    found = codes_of(study)
+    if found is None:
+        return None
+    by, codes = found
+    if by == BY_READINGS and any(_placed(each) for each in study.readings):
+        readings = [_parted(each, own) for each, own in zip(study.readings, codes, strict=True)]
+        kept = [_large(each) for each in readings]
+        codes = [code[mask] for code, mask in zip(codes, kept, strict=True) if mask.any()]
+        study = dataclasses.replace(study, readings=readings).subset(kept)
+    return _grouped(by, study, codes)
+
+
+def codes_of(study: Study) -> tuple[str, list[I64]] | None:
+    """What is left out together, and the group of each row of each of `study.readings`, no placement parted; None
+    where there are too few."""
     units, count = _units(study)
     if count >= FEWEST_PLACES:
-        pose = _mean_pose(study, units, count)
-        of_unit = np.arange(count) if count <= MOST_PLACES else regions(pose, REGIONS)
-        rows = not any(kind_of(each.artefact).placed(each.artefact) for each in study.readings)
-        by = "placements" if count <= MOST_PLACES else f"regions of {'readings' if rows else 'placements'}"
-        return _grouped(by, study, [of_unit[unit] for unit in units])
+        of_unit = np.arange(count) if count <= MOST_PLACES else regions(_mean_pose(study, units, count), REGIONS)
+        by = BY_PLACEMENTS if count <= MOST_PLACES else BY_READINGS
+        if count > MOST_PLACES and any(_placed(each) for each in study.readings):
+            by = BY_REGIONS
+        return by, [of_unit[unit] for unit in units]
     total = sum(len(each) for each in study.readings)
     parts = min(REGIONS, total // FEWEST_READINGS)
     if parts < FEWEST_REGIONS:
         return None
     code = regions(np.concatenate([each.q_rad for each in study.readings]), parts)
-    ends = np.cumsum([len(each) for each in study.readings])[:-1]
-    codes = np.split(code, ends)
-    parted = dataclasses.replace(
-        study, readings=[_parted(each, own) for each, own in zip(study.readings, codes, strict=True)]
-    )
-    kept = [_large(each) for each in parted.readings]
-    codes = [code[mask] for code, mask in zip(codes, kept, strict=True) if mask.any()]
-    return _grouped("regions of readings", parted.subset(kept), codes)
+    return BY_READINGS, np.split(code, np.cumsum([len(each) for each in study.readings])[:-1])
 
 
 def whole(study: Study) -> Groups:
@@ -111,7 +120,7 @@ def _units(study: Study) -> tuple[list[I64], int]:
     """What stays together: placements; rows of their own where no placement is fitted."""
     units, total = [], 0
     for each in study.readings:
-        code = each.placement_code if kind_of(each.artefact).placed(each.artefact) else np.arange(len(each))
+        code = each.placement_code if _placed(each) else np.arange(len(each))
         units.append(code + total)
         total += int(code.max()) + 1
     return units, total
@@ -125,8 +134,12 @@ def _mean_pose(study: Study, units: list[I64], count: int) -> F64:
     return mean
 
 
+def _placed(readings: Readings) -> bool:
+    return kind_of(readings.artefact).placed(readings.artefact)
+
+
 def _parted(readings: Readings, code: I64) -> Readings:
-    if not kind_of(readings.artefact).placed(readings.artefact):
+    if not _placed(readings):
         return readings
     placement = readings.placement_code
     labels = np.array([f"{a}/{b}" for a, b in zip(placement.tolist(), code.tolist(), strict=True)], dtype=object)
@@ -135,7 +148,7 @@ def _parted(readings: Readings, code: I64) -> Readings:
 
 def _large(readings: Readings) -> Bool:
     """(N,) false of parts with so few readings that they say next to nothing but where the part stands."""
-    if not kind_of(readings.artefact).placed(readings.artefact):
+    if not _placed(readings):
         return np.ones(len(readings), dtype=bool)
     large: Bool = np.bincount(readings.placement_code)[readings.placement_code] >= FEWEST_OF_PART
     return large

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -112,9 +112,9 @@ def penalty(u: F64, scale: F64, variance: float) -> F64:
     return found
 
 
-def rows_of(groups: Groups, blocks: Sequence[str], orders: Sequence[int]) -> Rows:
-    """Of all models with these blocks and orders. Raises UlnaInputError."""
-    geometry = geometry_of(asking(groups.study, [HARMONICS, *blocks], orders))
+def rows_of(groups: Groups, blocks: Sequence[str], orders: Sequence[int], near: Mapping[str, float]) -> Rows:
+    """Of all models with these blocks and orders; near: where the plain fit ends. Raises UlnaInputError."""
+    geometry = geometry_of(asking(groups.study, [HARMONICS, *blocks], orders), near)
     assembled, fitted = geometry.assembled, geometry.fitted
     rows, residuals, standing = _core.rows_of_fit(assembled.problem, assembled.hold, fitted)
     free = np.flatnonzero(~assembled.hold)

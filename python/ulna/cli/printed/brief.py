@@ -24,6 +24,7 @@ from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.hints import what_to_try
 from ulna.cli.printed.identification import cause_in_words, determined_in_words
+from ulna.cli.printed.mapped import mapped
 from ulna.cli.printed.scale import common_factor
 from ulna.cli.printed.scatter import scatter
 from ulna.cli.printed.signs import signs_in_lines
@@ -64,7 +65,7 @@ def _well(result: Result, width: int) -> list[RenderableType]:
     )
     before += ["", figures, ""]
     after = [*signs_found(result.fit), *_open(result, width), *judged_extras(result.extras)]
-    after += chosen_model(result.chosen, all_of_it=False)
+    after += [*chosen_model(result.chosen, all_of_it=False), *mapped(result.residual_map, all_of_it=False)]
     after += [*_far_off(result, width), "", _verdict(result)]
     room = MOST_LINES - _WRITTEN - sum(_lines(part, width) for part in [*before, *after])
     return [*before, *_parameters(result.parameters, width, room), *after]

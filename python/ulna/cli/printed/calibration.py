@@ -15,6 +15,7 @@ from ulna.cli.printed.chosen import chosen_model
 from ulna.cli.printed.extras import judged_extras
 from ulna.cli.printed.figures import before_after
 from ulna.cli.printed.identification import determined_in_words, directions
+from ulna.cli.printed.mapped import mapped
 from ulna.cli.printed.outliers import far_off
 from ulna.cli.printed.scale import common_factor
 from ulna.cli.printed.scatter import scatter
@@ -50,6 +51,7 @@ def calibration_report(result: Result) -> list[RenderableType]:
     parts += ["", probe_table(result.probes)]
     parts += directions(result.identifiability)
     parts += judged_extras(result.extras) + chosen_model(result.chosen, all_of_it=True)
+    parts += mapped(result.residual_map, all_of_it=True)
     return parts + far_off(result.outliers, result.fit)
 
 

@@ -14,6 +14,7 @@ from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.extras import JudgedExtra
 from ulna.calibration.identify import Identification
 from ulna.calibration.placements import PlacementFigures
+from ulna.calibration.residual_map import ResidualMap
 from ulna.calibration.summary import FitSummary
 from ulna.documents.content.acceptance import Verification
 from ulna.documents.content.artefacts import ArtefactRow
@@ -60,6 +61,7 @@ class Content:
     """As in a result: all of them, the farthest first."""
     extras: list[JudgedExtra]
     chosen: ChosenModel | None
+    residual_map: ResidualMap | None
     """Where the study left the blocks to Ulna."""
     verification: Verification | None
     """The acceptance test, where one was given."""

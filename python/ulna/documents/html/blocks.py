@@ -69,6 +69,7 @@ LOOKS = {
     "placements": " tall",
     "extras": "",
     "tried": " tall",
+    "mapped": "",
     "files": "",
 }
 

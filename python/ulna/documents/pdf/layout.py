@@ -39,9 +39,10 @@ LAYOUTS: dict[str, Layout] = {
     ),
     "tried": Layout(
         {"model": 2.2, "quantity": 1.6, "chosen": 0.9}
-        | _shares(1, "parameters-more", "prior-u", "left-out", "worse", "u-better"),
+        | _shares(1, "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse"),
         size_pt=7.5,
     ),
+    "mapped": Layout({"map-joint": 0.6, "follows": 1.2, **_shares(1, "map-share", "u-worse", "amplitude")}),
     "outliers": Layout(
         {"row": 0, "file": 1.5, **_shares(1, "artefact", "placement", "probe"), "size": 0, "times": 1, "counted": 0.9},
         size_pt=7.5,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from ulna.calibration.choosing.models import HARMONICS
 from ulna.calibration.choosing.tried import ChosenModel, TriedModel
 from ulna.calibration.extras import JudgedExtra
+from ulna.calibration.residual_map import ResidualMap
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined
 from ulna.documents.languages.words import Words
@@ -14,6 +15,7 @@ from ulna.documents.sections.blocks import Block, Paragraph, own, table
 from ulna.ground.digits import figure_mm, fixed, uncertainty
 
 TRIED = ("model", "quantity", "chosen", "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse")
+MAPPED = ("map-joint", "follows", "map-share", "u-worse", "amplitude")
 BY = {
     "placements": "chosen.by.placements",
     "regions of placements": "chosen.by.regions-of-placements",
@@ -25,7 +27,7 @@ COLUMNS = ("extra", "quantity", "verdict", "without", "with", "better", "u-bette
 
 def extras(content: Content, words: Words) -> list[Block]:
     """Nothing where none was asked for."""
-    return [*_judged(content, words), *_chosen(content.chosen, words)]
+    return [*_judged(content, words), *_chosen(content.chosen, words), *_mapped(content.residual_map, words)]
 
 
 def _judged(content: Content, words: Words) -> list[Block]:
@@ -77,6 +79,32 @@ def _model(extras: Sequence[str], order: int | None, drawn: bool, words: Words) 
     orders: Text = () if order is None else words("chosen.order", order=order)
     named = [joined([words(f"extra.{each}"), orders if each == HARMONICS else ()], " ") for each in extras]
     return joined(named, ", ")
+
+
+def _mapped(found: ResidualMap | None, words: Words) -> list[Block]:
+    """Whether residuals still follow the turn of a joint."""
+    if found is None:
+        return []
+    if not found.joints:
+        return [Paragraph(words("map.too-few"), "note")]
+    joints = ", ".join(map(str, found.missing))
+    said = words("map.missing", joints=joints) if joints else words("map.none")
+    rows = [
+        [
+            own(each.joint),
+            words("map.follows") if each.follows else (),
+            own(fixed(100.0 * each.share, 1)),
+            own(fixed(100.0 * each.u_share, 1)),
+            own(f"{each.amplitude_rad:.1e}"),
+        ]
+        for each in found.joints
+    ]
+    note = words("map.note", groups=found.groups, by=words(BY[found.by]))
+    return [
+        Paragraph(said),
+        table("mapped", words("section.mapped"), words, MAPPED, rows, left=2),
+        Paragraph(note, "note"),
+    ]
 
 
 def _extra(each: JudgedExtra, words: Words) -> list[Text]:
