@@ -271,14 +271,13 @@ fn sliding_axis(takes_part: &[usize], arm: &Arm) -> Option<Because> {
     };
     let i = (0..=last).find(|&i| arm.slides(i) && around(i))?;
     let name = i + 1;
-    let hold = if i == last { format!("joint {i}'s a and d") } else { format!("joint.{name}.a and joint.{name}.d") };
     Some(Because {
         cause: Cause::SlidingAxis,
         because: format!(
             "joint {name} slides: of its axis only the direction matters, and where it lies is said by the links beside it \
              as well"
         ),
-        remedy: format!("none is needed, no point depends on it; or hold {hold}"),
+        remedy: "none is needed, no point depends on it; or hold one of these parameters".into(),
     })
 }
 
