@@ -14,6 +14,7 @@ from tests.simulations import saved, write
 
 import ulna
 from ulna import Arm, Study, UlnaInputError
+from ulna.documents.content.clouds import clouds
 from ulna.exchange.export.dh import dh_table, without_beta
 
 OF = arm(3, "prismatic")
@@ -257,3 +258,14 @@ def test_what_does_not_cover_it_says_so(tmp_path: Path) -> None:
     with pytest.raises(UlnaInputError, match=r"joint 3 .* prismatic, which test plans do not cover"):
         OF.check_turns("profile.toml", "test plans")
     arm(1).check_turns("profile.toml", "test plans")
+
+
+def test_a_report_draws_its_residuals_over_millimetres(made: Path) -> None:
+    """Over the joint that slides the abscissa is how far it slid, over the others degrees."""
+    study = Study.load(made / "study.toml")
+    result = ulna.calibrate(study)
+    found, _ = clouds(study, result.arm, result.residuals)
+    joints = [each for each in found if each.over == "joint"]
+    assert [each.slides for each in joints] == OF.slides.tolist()
+    assert 100.0 < np.ptp(joints[2].x) < 350.1
+    assert joints[2].x == pytest.approx(np.concatenate([group.q_rad[:, 2] for group in study.readings]))
