@@ -14,7 +14,7 @@ from tests.oracle import arms
 from tests.oracle.chain import Chain
 from tests.oracle.drawn import drawn_joints, drawn_tips
 from tests.small_study import says
-from tests.urdf_texts import Made, chains, poses, urdf, write
+from tests.urdf_texts import Made, chains, chains_that_slide, poses, urdf, write
 
 from ulna import Arm, Joint, Probe, UlnaInputError
 from ulna.exchange.export.source import not_carried, read_source, remark_not_carried
@@ -58,6 +58,20 @@ def test_import_export_import(tmp_path_factory: pytest.TempPathFactory, made: li
     assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
     assert np.array_equal(t_root_base, np.eye(4))
     assert [joint.model for joint in again.joints] == [joint.model for joint in arm.joints]
+
+
+@given(chains_that_slide)
+def test_slides_come_back_too(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -> None:
+    folder = tmp_path_factory.mktemp("urdf")
+    arm, _ = arm_from_chain(read_chain(write(folder, urdf(made)), "tip"))
+    path = write(folder, urdf_text(arm), "again.urdf")
+    again, _ = arm_from_chain(read_chain(path, "ball"))
+    q_rad = np.where(arm.slides, 100.0, 1.0) * poses(arm.n, 5)
+    assert np.abs(drawn_tips(path, "ball", q_rad) - arm.tip(q_rad)).max() < 1e-9
+    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
+    for one, other in zip(arm.joints, again.joints, strict=True):
+        assert one.type == other.type
+        assert one.limits_rad == (other.limits_rad and pytest.approx(other.limits_rad))
 
 
 def test_what_ros_demands_of_the_file(tmp_path: Path) -> None:

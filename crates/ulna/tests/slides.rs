@@ -89,6 +89,19 @@ fn of_the_axis_of_a_slide_only_the_direction_matters() {
     }
 }
 
+/// A portal: three slides at nearly right angles, then a wrist of two joints.
+#[test]
+fn three_slides_in_a_row_are_one_matter() {
+    let rows = [[0.02, -1.5, 5.0, 3.0], [1.5, 1.6, 10.0, 4.0], [1.6, 0.3, 20.0, 0.0], [0.1, 1.5, 30.0, 50.0]];
+    let probe = Probe { name: "bent".into(), tip_mm: [40.0, -10.0, 180.0] };
+    let arm = Arm::new(rows.map(Joint::dh).to_vec(), 1.0, vec![probe]).unwrap();
+    let arm = arm.with_slides(&[Some(400.0), Some(400.0), Some(400.0), None, None]).unwrap();
+    let lost = fitted(&mut problem(&arm, &arm, 200, None), &arm).identifiability.lost;
+    // directions of three axes, the zeros of three scales; what is turned with the third is turned with the fourth
+    assert!(lost.len() >= 4, "{lost:?}");
+    assert!(lost.iter().all(|each| each.because.cause == Cause::SlidingAxis), "{lost:?}");
+}
+
 fn fitted(problem: &mut Problem, arm: &Arm) -> Fitted {
     fit(problem, &all(arm), &Options::default(), &Unwatched).unwrap()
 }

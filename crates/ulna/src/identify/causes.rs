@@ -279,22 +279,25 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
 fn sliding_axis(takes_part: &[usize], arm: &Arm) -> Option<Because> {
     let (last, geometry) = (arm.encoders() - 1, arm.geometry_count());
     let around = |i: usize| {
+        // joints that slide one after the other, and the links at both ends of them
+        let slides = |&k: &usize| arm.slides(k);
+        let from = (0..i).rev().take_while(slides).last().unwrap_or(i).saturating_sub(1);
+        let to = (i..=last).take_while(slides).last().unwrap_or(i) + 1;
         takes_part.iter().all(|&j| match arm.joint_of(j) {
-            Some(joint) => j < geometry && joint.abs_diff(i) <= 1,
+            Some(joint) => j < geometry && (from..=to).contains(&joint),
             // the tip stands for the last joint's link
-            None => j < geometry && last <= i + 1,
+            None => j < geometry && last <= to,
         })
     };
     let i = (0..=last).find(|&i| arm.slides(i) && around(i))?;
     let name = i + 1;
-    let hold = if i == last { format!("joint {i}'s a and d") } else { format!("joint.{name}.a and joint.{name}.d") };
     Some(Because {
         cause: Cause::SlidingAxis,
         because: format!(
-            "joint {name} slides: of its axis only the direction matters, and where it lies is said by the links beside it \
+            "joint {name} slides: of such an axis only the direction matters, and where it lies is said by the links beside it \
              as well"
         ),
-        remedy: format!("none is needed, no point depends on it; or hold {hold}"),
+        remedy: "none is needed, no point depends on it; or hold one of these parameters".into(),
     })
 }
 

@@ -136,7 +136,8 @@ def clouds(study: Study, arm: Arm, residuals: pl.DataFrame) -> tuple[list[Cloud]
         x, slides = np.concatenate([part.q_rad[:, joint] for part in pointed]), arm.joints[joint].slides
         x = x if slides else np.degrees(folded_rad(x))
         y = np.concatenate([part.along_joint_mm[:, joint] for part in pointed if part.along_joint_mm is not None])
-        found.append(_cloud("joint", joint + 1, x, y, np.concatenate([part.reading for part in pointed])))
+        reading = np.concatenate([part.reading for part in pointed])
+        found.append(_cloud("joint", joint + 1, x, y, reading, slides))
     reach = np.linalg.norm(np.concatenate([part.tip_mm for part in parts]), axis=1)
     size = np.concatenate([part.size_mm for part in parts])
     found.append(_cloud("reach", 0, reach, size, np.concatenate([part.reading for part in parts])))
