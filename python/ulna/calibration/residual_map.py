@@ -53,7 +53,7 @@ class JointMap:
     u_share: float
     """Standard error of that mean."""
     amplitude_rad: float
-    """Root mean square of the error of the joint's angle that all readings together show."""
+    """Root mean square of the error of the joint's angle that all readings together show, weighed by their levers."""
     scale: float
     """Length scale of the map, as chord of the unit circle: about the radians over which it changes."""
     follows: bool
@@ -120,7 +120,7 @@ def _of_joint(seen: _Seen, joint: int, groups: I64, noise: float, needed: float)
         left = residual[out] - lever[out] * predicted[:, None]
         shares.append(1.0 - float((left**2).sum() / max((residual[out] ** 2).sum(), 1e-300)))
     share, u = float(np.mean(shares)), float(np.std(shares, ddof=1) / np.sqrt(len(shares)))
-    amplitude = unit * float(np.sqrt(np.mean(whole**2)))
+    amplitude = unit * float(np.sqrt(np.average(whole**2, weights=squares)))
     scale = float(kernel.k2.length_scale)
     return JointMap(joint + 1, share, u, amplitude, scale, share > max(LEAST, needed * u))
 

@@ -38,7 +38,7 @@ LAYOUTS: dict[str, Layout] = {
         {"extra": 1.6, "quantity": 1.8, "verdict": 1.2, **_shares(1, "without", "with", "better", "u-better")}
     ),
     "tried": Layout(
-        {"model": 2.2, "quantity": 1.6, "chosen": 0.9}
+        {"model": 2.6, "chosen": 0.9}
         | _shares(1, "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse"),
         size_pt=7.5,
     ),

@@ -14,7 +14,7 @@ from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, own, table
 from ulna.ground.digits import figure_mm, fixed, uncertainty
 
-TRIED = ("model", "quantity", "chosen", "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse")
+TRIED = ("model", "chosen", "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse")
 MAPPED = ("map-joint", "follows", "map-share", "u-worse", "amplitude")
 BY = {
     "placements": "chosen.by.placements",
@@ -53,16 +53,16 @@ def _chosen(chosen: ChosenModel | None, words: Words) -> list[Block]:
         groups=chosen.groups,
         by=words(BY[chosen.by]),
         left=chosen.untried,
+        figure=words(f"figure.{chosen.figure}"),
     )
-    rows = [_tried(each, chosen.figure, words) for each in chosen.tried]
-    return [Paragraph(said), table("tried", words("section.tried"), words, TRIED, rows, left=3)]
+    rows = [_tried(each, words) for each in chosen.tried]
+    return [Paragraph(said), table("tried", words("section.tried"), words, TRIED, rows, left=2)]
 
 
-def _tried(each: TriedModel, figure: str, words: Words) -> list[Text]:
+def _tried(each: TriedModel, words: Words) -> list[Text]:
     u = each.prior_u.get(HARMONICS)
     return [
         _model(each.extras, each.order, each.drawn, words),
-        words(f"figure.{figure}"),
         words("chosen.kept") if each.kept else (),
         own(each.parameters),
         own(uncertainty(each.lengths_u_mm)),
