@@ -4,7 +4,7 @@
 mod common;
 
 use common::{cheng_2011, rng};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Rotation3, Vector3};
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,7 +13,7 @@ use ulna::artefacts::{KINDS, Noise, Rows, Size, Stated};
 use ulna::fit::calibrate::{Options, fit};
 use ulna::fit::monte_carlo::{Repeat, recalibrate};
 use ulna::kinematics::inverse::{Limits, posture_for_point};
-use ulna::kinematics::{Angles, Conditions, tip_mm};
+use ulna::kinematics::{Angles, Conditions, frames, tip_mm};
 use ulna::monitor::Unwatched;
 use ulna::problem::Problem;
 
@@ -27,6 +27,8 @@ const TAKEN: &[(&str, &str, Taking)] = &[
     ("sphere", "a ball", |problem, truth, rng| surface(problem, truth, rng, ("sphere", 50.0), &round)),
     ("cylinder", "a shaft", |problem, truth, rng| surface(problem, truth, rng, ("cylinder", 60.0), &shaft)),
     ("distance", "a draw wire", wire),
+    // orientations know no length: beside readings that do
+    ("orientation", "a target that is mounted anyhow, and pairs of poses", target),
     ("plane", "a flat", |problem, truth, rng| surface(problem, truth, rng, ("plane", 0.0), &flat)),
 ];
 
@@ -100,7 +102,7 @@ fn plate(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
     let features_mm = [[0.0, 0.0, 0.0], [120.0, 0.0, 0.0], [0.0, 150.0, 0.0], [130.0, 90.0, 20.0], [60.0, 60.0, -40.0]];
     let mut q_rad = vec![];
     for _ in 0..20 {
-        let turn = nalgebra::Rotation3::new(direction(rng) * 2.0);
+        let turn = Rotation3::new(direction(rng) * 2.0);
         q_rad.extend(touch(truth, &features_mm.map(|at| turn * Vector3::from(at)), rng));
     }
     let rows = Rows {
@@ -137,6 +139,34 @@ fn wire(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
     problem.add("distance", &Stated { name: "wire", dimensions, ..Stated::default() }, &rows).unwrap();
 }
 
+/// A target on the last link as an instrument sees it from two places, and lengths.
+fn target(problem: &mut Problem, truth: &Arm, rng: &mut Xoshiro256PlusPlus) {
+    lengths(problem, truth, rng);
+    let mount = Rotation3::new(Vector3::new(0.4, -1.1, 0.7));
+    let stands = [Rotation3::new(direction(rng) * 2.0), Rotation3::new(direction(rng))];
+    let (mut q_rad, mut rotation_rad, mut placement) = (vec![], vec![], vec![]);
+    for row in 0..80 {
+        let q = anywhere(rng);
+        let link = frames(truth, &q).last().unwrap().rotation.to_rotation_matrix();
+        rotation_rad.push((stands[row % 2] * link * mount).scaled_axis().into());
+        placement.push((row % 2) as i64);
+        q_rad.extend(q);
+    }
+    let rows = Rows {
+        poses: Angles::cold(&q_rad),
+        probe: &[0; 80],
+        placement: Some(&placement),
+        rotation_rad: Some(&rotation_rad),
+        rotation_u_rad: Some(&[2e-5; 80]),
+        ..Rows::default()
+    };
+    let near = mount.scaled_axis();
+    let size = |name, value, fitted| Size { name, value, u: 0.0, fitted };
+    let dimensions =
+        &[size("rx", near.x, true), size("ry", near.y, true), size("rz", near.z, true), size("lever", 1000.0, false)];
+    problem.add("orientation", &Stated { name: "target", dimensions, ..Stated::default() }, &rows).unwrap();
+}
+
 /// Places of a ball's centre that touches the surface in one standing, about a point of it.
 type Standing = dyn Fn(f64, &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>>;
 
@@ -145,7 +175,7 @@ fn round(diameter_mm: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
 }
 
 fn shaft(diameter_mm: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
-    let turn = nalgebra::Rotation3::new(direction(rng) * 2.0);
+    let turn = Rotation3::new(direction(rng) * 2.0);
     let around = |rng: &mut Xoshiro256PlusPlus| {
         let (sin, cos) = rng.random_range(-std::f64::consts::PI..std::f64::consts::PI).sin_cos();
         Vector3::new(cos, sin, 0.0) * (0.5 * (diameter_mm + BALL_MM)) + Vector3::z() * rng.random_range(-100.0..100.0)
@@ -154,7 +184,7 @@ fn shaft(diameter_mm: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
 }
 
 fn flat(_: f64, rng: &mut Xoshiro256PlusPlus) -> Vec<Vector3<f64>> {
-    let turn = nalgebra::Rotation3::new(direction(rng) * 2.0);
+    let turn = Rotation3::new(direction(rng) * 2.0);
     (0..20)
         .map(|_| turn * Vector3::new(rng.random_range(-150.0..150.0), rng.random_range(-150.0..150.0), 0.0))
         .collect()
