@@ -74,7 +74,7 @@ types: build ## mypy --strict
 
 .PHONY: rust-test
 rust-test: build ## tests of the core, and its documentation with warnings as errors
-	cargo test --locked --release --package ulna
+	cargo test --locked --profile checked --package ulna
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --workspace --quiet
 
 .PHONY: python-test
@@ -100,7 +100,7 @@ bench: build ## time the core and the peers that are installed, side by side; wr
 
 .PHONY: nist
 nist: build ## NIST's reference problems and fits through the solver and the geometry; writes the tables of the docs
-	ULNA_NIST="$(CURDIR)/docs/benchmarks" cargo test --locked --release --package ulna --test nist
+	ULNA_NIST="$(CURDIR)/docs/benchmarks" cargo test --locked --profile checked --package ulna --test nist
 
 .PHONY: example-data
 example-data: build ## make the readings of examples/platinum anew (fixed seed: nothing changes unless the generator did)

@@ -70,15 +70,20 @@ def beyond_geometry(result: dict[str, Any]) -> None:
     result["arm"]["joint"][0]["expansion"] = 1.1e-5
     result["arm"]["joint"][1] |= {"compliance": 2e-6, "mass": 4.5, "centre": [1.0, -2.0, 30.0]}
     size = len(result["covariance"]["names"])
-    for name, unit, u in (("joint.1.expansion", "1/K", 2e-6), ("joint.2.compliance", "rad/(N m)", 1e-7)):
-        result["parameters"].append(
-            {"name": name, "unit": unit, "start": 0.0, "value": 1e-5, "u": u, "status": "fitted"}
-        )
-        result["covariance"]["names"].append(name)
-        for row in result["covariance"]["matrix"]:
-            row.append(0.0)
-        size += 1
-        result["covariance"]["matrix"].append([0.0] * (size - 1) + [u * u])
+    fitted = {"joint.1.expansion": (1.1e-5, 2e-6), "joint.2.compliance": (2e-6, 1e-7)}
+    for what, unit in (("expansion", "1/K"), ("compliance", "rad/(N m)")):
+        for number in range(1, len(result["arm"]["joint"]) + 1):
+            name = f"joint.{number}.{what}"
+            value, u = fitted.get(name, (0.0, None))
+            row = {"name": name, "unit": unit, "start": 0.0, "value": value, "u": u}
+            result["parameters"].append(row | {"status": "held" if u is None else "fitted"})
+            if u is None:
+                continue
+            result["covariance"]["names"].append(name)
+            for each in result["covariance"]["matrix"]:
+                each.append(0.0)
+            result["covariance"]["matrix"].append([0.0] * size + [u * u])
+            size += 1
 
 
 def nasty(result: dict[str, Any]) -> None:

@@ -15,11 +15,12 @@ from ulna.arm.arm import Arm
 
 @dataclass(frozen=True)
 class Made:
-    """One joint: fixed, or turning about an axis."""
+    """One joint: fixed, or turning about an axis, or sliding along it."""
 
     xyz_m: tuple[float, float, float]
     rpy: tuple[float, float, float]
     axis: tuple[float, float, float] | None
+    slides: bool = False
 
 
 def urdf(joints: list[Made], base: str = "root") -> str:
@@ -33,7 +34,7 @@ def urdf(joints: list[Made], base: str = "root") -> str:
     parent = base
     for k, joint in enumerate([*joints, Made((0.03, -0.02, 0.1), (0.0, 0.3, 0.0), None)]):
         child = f"l{k}" if k < len(joints) else "tip"
-        kind = "fixed" if joint.axis is None else "continuous"
+        kind = "fixed" if joint.axis is None else "prismatic" if joint.slides else "continuous"
         lines += [
             f'  <link name="{child}"><visual><origin xyz="1 2 3"/></visual></link>',
             f'  <joint name="j{k}" type="{kind}">',
@@ -41,6 +42,7 @@ def urdf(joints: list[Made], base: str = "root") -> str:
             f"    <origin xyz='{_text(joint.xyz_m)}'   rpy=\"{_text(joint.rpy)}\" />",
         ]
         lines += [] if joint.axis is None else [f'    <axis xyz="{_text(joint.axis)}"/>']
+        lines += ['    <limit lower="-0.1" upper="0.4"/>'] if joint.slides else []
         lines += ["  </joint>"]
         parent = child
     return "\n".join([*lines, "</robot>"]) + "\n"
@@ -58,6 +60,7 @@ along = st.sampled_from([(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (0.
 somewhere = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda v: np.linalg.norm(v) > 0.1)
 xyz, rpy = st.tuples(length, length, length), st.tuples(angle, angle, angle)
 turning = st.builds(Made, xyz, rpy, along | somewhere)
+sliding = st.builds(Made, xyz, rpy, along | somewhere, st.just(True))
 fixed = st.builds(Made, xyz, rpy, st.none())
 
 
@@ -74,6 +77,15 @@ chains = st.builds(
     st.lists(turning, min_size=2, max_size=7),
     st.lists(fixed, max_size=3),
     st.lists(st.integers(0, 9), min_size=3, max_size=3),
+)
+
+
+#: the same with prismatic joints, at least one; at the end as well
+chains_that_slide = st.builds(
+    lambda made, slides, where: _interleaved(made, slides, where),
+    chains,
+    st.lists(sliding, min_size=1, max_size=3),
+    st.lists(st.integers(0, 12), min_size=3, max_size=3),
 )
 
 

@@ -140,11 +140,11 @@ BROUGHT_IN: dict[str, tuple[list[str], str, str]] = {
         "robot.urdf",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="arm.xacro"/></robot>',
     ),
-    "a joint that slides": (
+    "a joint that floats": (
         ["import", "urdf", "robot.urdf", "-o", "arm.toml"],
         "robot.urdf",
         '<robot name="r"><link name="hall"/><link name="base"/>'
-        '<joint name="lift" type="prismatic"><parent link="hall"/><child link="base"/></joint></robot>',
+        '<joint name="lift" type="floating"><parent link="hall"/><child link="base"/></joint></robot>',
     ),
     "a table without units": (
         ["import", "dh", "maker.csv", "-o", "arm.toml", "--convention", "modified-dh"],

@@ -3,6 +3,7 @@
 from .arm.arm import Arm
 from .arm.effects.effects import Effects
 from .arm.joint import Joint
+from .arm.payload import Payload
 from .arm.probe import Probe
 from .artefacts.artefact import Artefact
 from .artefacts.readings import Readings
@@ -43,6 +44,7 @@ __all__ = [
     "Measured",
     "Measurement",
     "Noise",
+    "Payload",
     "Plan",
     "PlanSpec",
     "Prior",

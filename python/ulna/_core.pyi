@@ -5,7 +5,7 @@ above) does that. All functions release the GIL. `UlnaError` carries a message m
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TypeAlias, TypedDict
+from typing import TypeAlias, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,14 @@ class UlnaError(ValueError):
 def simd_level() -> str:
     """Which instruction set the batch kernels run on: "avx512", "avx2", "neon" or "scalar"."""
 
+class _Told(TypedDict, total=False):
+    warmth_k: F64 | None
+    """(N,) or (N, n) temperature above 20 °C of the links; None: 20 °C."""
+    approach: F64 | None
+    """(N, n) +1 where the encoder's angle had been rising, -1 falling, 0 or None: nobody knows."""
+    payload: F64 | None
+    """(N, 4) what was carried: kg, and x, y, z of its centre in the probe's frame, mm; None: nothing."""
+
 class Arm:
     """Geometry of an arm and its probes. Immutable."""
 
@@ -41,6 +49,8 @@ class Arm:
         tips_mm: F64,  # (P, 3)
         full_last_link: bool = False,  # then the last joint has a link too
     ) -> None: ...
+    def with_slides(self, slides_mm: F64) -> Arm:
+        """The same arm with joints that slide, (n,) how far from zero at the most, mm; NaN of those that turn."""
     def with_effects(
         self,
         effects: Sequence[tuple[str, Mapping[str, ArrayLike]]],  # kind, and its arrays by name
@@ -71,53 +81,24 @@ class Arm:
     def with_parameters(self, parameters: F64) -> Arm: ...
     def reach_mm(self, probe: int = 0) -> float:
         """Sum of the lengths of all links and the tip: nothing is farther from the base."""
-    # warmth_k, everywhere: (N,) or (N, n) temperature above 20 °C of the links; None: 20 °C
-    # approach, everywhere: (N, n) +1 where the encoder's angle had been rising, -1 falling, 0 or None: nobody knows
-    def tip(self, q_rad: F64, probe: int | I64 = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    def tip(self, q_rad: F64, probe: int | I64 = 0, **told: Unpack[_Told]) -> F64:
         """(N, n) encoder angles → (N, 3) tip positions in the base frame; probe one index or one per row."""
-    def tip_plain(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    def tip_plain(self, q_rad: F64, probe: int = 0, **told: Unpack[_Told]) -> F64:
         """The same by frames, one pose at a time: the formula as written, for comparison."""
-    def jacobian(self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None) -> F64:
+    def jacobian(self, q_rad: F64, probe: int = 0, **told: Unpack[_Told]) -> F64:
         """(N, n) → (N, 3, parameters): ∂p/∂parameter, mm for a unit of each."""
-    def encoder_jacobian(
-        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
-    ) -> F64:
+    def encoder_jacobian(self, q_rad: F64, probe: int = 0, **told: Unpack[_Told]) -> F64:
         """(N, n) → (N, 3, n): ∂p/∂q_i, mm/rad."""
-    def tip_covariance(
-        self,
-        q_rad: F64,
-        probe: int,
-        columns: I64,
-        covariance: F64,
-        warmth_k: F64 | None = None,
-        approach: F64 | None = None,
-    ) -> F64:
+    def tip_covariance(self, q_rad: F64, probe: int, columns: I64, covariance: F64, **told: Unpack[_Told]) -> F64:
         """J C Jᵀ at each pose, (N, 6): xx, xy, xz, yy, yz, zz in mm². columns (k,): which parameters C (k, k) is of."""
-    def direction_effect(
-        self,
-        q_rad: F64,
-        probe: int,
-        columns: I64,
-        directions: F64,
-        warmth_k: F64 | None = None,
-        approach: F64 | None = None,
-    ) -> F64:
+    def direction_effect(self, q_rad: F64, probe: int, columns: I64, directions: F64, **told: Unpack[_Told]) -> F64:
         """(N,): how far the tip moves, mm, for the worst of the parameter directions (m, k). Zero: none matters."""
     def pose_for_points(
-        self,
-        points_mm: F64,
-        limits_rad: F64,
-        seed: int,
-        probe: int = 0,
-        tries: int = 40,
-        warmth_k: F64 | None = None,
-        approach: F64 | None = None,
+        self, points_mm: F64, limits_rad: F64, seed: int, probe: int = 0, tries: int = 40, **told: Unpack[_Told]
     ) -> tuple[F64, Bool]:
         """Inverse kinematics: encoder angles (N, n) within limits (n, 2) that put the tip on points (N, 3), with a
         random elbow and wrist per point, reproducible by seed; and whether each was reached (to 1e-9 mm)."""
-    def check_jacobian(
-        self, q_rad: F64, probe: int = 0, warmth_k: F64 | None = None, approach: F64 | None = None
-    ) -> float:
+    def check_jacobian(self, q_rad: F64, probe: int = 0, **told: Unpack[_Told]) -> float:
         """Largest |analytic − numerical| over all entries, relative to the reach: the public derivative checker."""
 
 class LostDirection(TypedDict):
@@ -197,9 +178,12 @@ class Problem:
         # an unknown of the fit: within its uncertainty, freely where that is 0
         inside: bool = False,  # whether a hollow is touched
         balls_mm: F64 | None = None,  # (P,) diameter of each probe's ball
+        rotation_rad: F64 | None = None,  # (N, 3) rotation vectors of a target, in the frame of who saw it
+        rotation_u_rad: F64 | None = None,  # (N,) standard uncertainty of that about each axis
         warmth_k: F64 | None = None,
         approach: F64 | None = None,
         p_approach: F64 | None = None,  # of the second poses
+        payload: F64 | None = None,
     ) -> int:
         """Readings of one artefact; returns the group's number. Raises UlnaError for a kind that there is not, and for
         what a kind needs and lacks or has no use for, by name."""
@@ -214,7 +198,7 @@ class Problem:
         """The arm's, then the fitted dimensions of artefacts, such as `artefact.ball.diameter`."""
     @property
     def parameter_units(self) -> list[str]:
-        """Those of the arm, or "mm" or "1" of a dimension."""
+        """Those of the arm, or "mm", "rad" or "1" of a dimension."""
     @property
     def parameters(self) -> F64: ...
     def with_arm(self, arm: Arm) -> Problem: ...

@@ -58,7 +58,7 @@ def test_what_is_done_is_kept_and_the_rest_is_done(arms: Path, tmp_path: Path) -
     again = ulna.batch(arms, out, progress=lambda *report: told.append(report))
     assert again.converged
     assert [entry.done_before for entry in again.studies] == [True, False, True]
-    assert told == [("studies", 2, 3), ("studies", 3, 3)]
+    assert told == [("studies", done, 3) for done in range(4)]
     assert (out / "press" / "study" / "result.json").read_bytes() == before
 
 
@@ -72,6 +72,78 @@ def test_another_result_is_not_overwritten(arms: Path, tmp_path: Path) -> None:
     assert "other files, options or another version" in (entry.message or "")
     (entry,) = ulna.batch(arms, out, only="press/*", force=True).studies
     assert (entry.status, entry.done_before) == ("converged", False)
+
+
+def file_in_place_of_a_folder(arms: Path, out: Path) -> None:
+    (out / "weld").mkdir(parents=True)
+    (out / "weld" / "study").write_text("x")
+
+
+def damaged_earlier_result(arms: Path, out: Path) -> None:
+    (out / "weld" / "study").mkdir(parents=True)
+    (out / "weld" / "study" / "result.json").write_text('{"provenance": []}')
+
+
+def earlier_result_without_its_arm(arms: Path, out: Path) -> None:
+    ulna.batch(arms, out, only="weld/*")
+    (out / "weld" / "study" / "arm.toml").unlink()
+
+
+def no_text(arms: Path, out: Path) -> None:
+    (arms / "weld" / "study.toml").write_bytes(b'format = "ulna-study/1"\n\xff\xfe\x00')
+
+
+def folder_in_place_of_readings(arms: Path, out: Path) -> None:
+    (arms / "weld" / "bars.csv").unlink()
+    (arms / "weld" / "bars.csv").mkdir()
+
+
+def a_loop_of_links(arms: Path, out: Path) -> None:
+    (arms / "weld" / "bars.csv").unlink()
+    (arms / "weld" / "bars.csv").symlink_to("bars.csv")
+
+
+WRONG = [
+    file_in_place_of_a_folder,
+    damaged_earlier_result,
+    earlier_result_without_its_arm,
+    no_text,
+    folder_in_place_of_readings,
+    a_loop_of_links,
+]
+
+
+@pytest.mark.parametrize("spoil", WRONG)
+def test_whatever_is_wrong_with_one_stops_no_other(spoil, arms: Path, tmp_path: Path) -> None:
+    shutil.rmtree(arms / "spoilt")
+    out = tmp_path / "out"
+    spoil(arms, out)
+    found = {entry.name: entry for entry in ulna.batch(arms, out).studies}
+    assert found["press/study"].status == "converged"
+    assert found["weld/study"].status == "refused"
+    assert found["weld/study"].message
+    assert "fault of Ulna's" not in found["weld/study"].message
+    assert (out / "press" / "study" / "result.json").is_file()
+    assert json.loads((out / "batch.json").read_text("utf-8"))["studies"][0]["name"] == "press/study"
+
+
+def test_the_list_takes_no_others_place(arms: Path, tmp_path: Path) -> None:
+    """Neither that of somebody's file, nor, through a link, of an input; an earlier list is replaced."""
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "batch.json").write_text("precious")
+    with pytest.raises(ulna.UlnaInputError, match=r"batch\.json: is no list of an earlier batch.*--force"):
+        ulna.batch(arms, out, only="press/*")
+    assert (out / "batch.json").read_text() == "precious"
+    ulna.batch(arms, out, only="press/*", force=True)
+    ulna.batch(arms, out, only="weld/*")
+    assert [each["name"] for each in json.loads((out / "batch.json").read_text())["studies"]] == ["weld/study"]
+    (out / "batch.json").unlink()
+    (out / "batch.json").symlink_to(arms / "press" / "study.toml")
+    for force in (False, True):
+        with pytest.raises(ulna.UlnaInputError, match="remove the link"):
+            ulna.batch(arms, out, force=force)
+    assert "ulna-study/1" in (arms / "press" / "study.toml").read_text()
 
 
 def test_which_studies(arms: Path, tmp_path: Path) -> None:

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from tests.oracle.published import TABLE_4
 
 import ulna._core as _core
+from ulna.arm.attitudes import attitudes
 
 RUNS = 1000
 #: of 1000 runs, 95 % intervals hold the truth 950 ± 7 times; with 75 of them looked at, some stray by three and a half
@@ -53,9 +55,32 @@ def _points(features_mm: list[list[float]]):
     return add
 
 
+def _orientations(problem: _core.Problem, truth: _core.Arm, rng: np.random.Generator) -> None:
+    """Lengths, and beside them a target that is mounted anyhow, as a tracker of 20 µrad sees it from two places."""
+    _lengths(problem, truth, rng)
+    count, mount = 60, np.array([0.4, -1.2, 0.7])
+    q_rad = rng.uniform(-2.5, 2.5, (count, 7))
+    held = Rotation.from_matrix(attitudes(truth, q_rad, 0, {}))
+    stands = Rotation.from_rotvec(np.array([[0.1, 2.0, -0.4], [1.0, 0.2, 0.3]]))
+    placement = np.arange(count) % 2
+    seen = (stands[placement] * held * Rotation.from_rotvec(mount)).as_rotvec()
+    problem.add(
+        "orientation",
+        "target",
+        q_rad=q_rad,
+        probe=np.zeros(count, dtype=np.int64),
+        placement=placement,
+        rotation_rad=seen,
+        rotation_u_rad=np.full(count, 2e-5),
+        dimensions=[(axis, value, 0.0, True) for axis, value in zip(("rx", "ry", "rz"), mount + 0.01, strict=True)]
+        + [("lever", 1000.0, 0.0, False)],
+    )
+
+
 KINDS = {
     "lengths": _lengths,
     "bar": _points([[0.0, 0.0, 0.0], [443.172, 0.0, 0.0]]),
+    "orientations": _orientations,
     "plate": _points([[0.0, 0.0, 0.0], [300.0, 0.0, 0.0], [0.0, 300.0, 0.0], [300.0, 300.0, 0.0]]),
 }
 
@@ -67,12 +92,14 @@ def test_intervals_hold_the_truth_when_the_artefact_is_uncertain(kind: str) -> N
     start = truth.with_parameters(np.asarray(truth.parameters) + np.tile([0.01, 0.01, 1.0, 1.0], 7)[:27] * 0.5)
     problem = _core.Problem(start, np.full(7, 5e-6), 0.008)
     KINDS[kind](problem, truth, np.random.default_rng(3))
-    nothing_held = np.zeros(27, dtype=bool)
+    # dimensions are truly what is stated of them
+    true = np.concatenate([truth.parameters, problem.parameters[27:]])
+    nothing_held = np.zeros(len(true), dtype=bool)
     values, u, converged = _core.recalibrate(problem, nothing_held, truth, RUNS, seed=1, threads=2)
     assert converged.all()
-    held = (np.abs(values - np.asarray(truth.parameters)) < 1.96 * u).mean(axis=0)
+    held = (np.abs(values - true) < 1.96 * u).mean(axis=0)
     determined = np.isfinite(u).all(axis=0)
-    assert determined.sum() == 25
+    assert determined.sum() == len(true) - 2
     assert held[determined].min() > LOWEST
     assert held[determined].max() < HIGHEST
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -138,7 +139,10 @@ def test_ctrl_c_leaves_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 @pytest.mark.parametrize("out", ["points.csv", "points.parquet"])
-def test_ctrl_c_while_writing_takes_the_half_written_file_away(tmp_path: Path, out: str) -> None:
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ctrl_c_while_writing_takes_the_half_written_file_away(
+    tmp_path: Path, out: str, sent: signal.Signals, code: int
+) -> None:
     platinum().save(tmp_path / "arm.toml")
     q = np.random.default_rng(0).uniform(-3, 3, (3_000_000, 7))
     pl.DataFrame({f"q{k + 1}": q[:, k] for k in range(7)}).write_parquet(tmp_path / "q.parquet")
@@ -146,8 +150,40 @@ def test_ctrl_c_while_writing_takes_the_half_written_file_away(tmp_path: Path, o
     process = subprocess.Popen([*command, "-o", str(tmp_path / out)], stderr=subprocess.PIPE, text=True)
     while process.poll() is None and not list(tmp_path.glob(".points*")):
         time.sleep(0.002)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(sent)
     _, err = process.communicate(timeout=20)
-    assert process.returncode == 130, "the work was over before it could be interrupted"
+    assert process.returncode == code, "the work was over before it could be interrupted"
     assert "Interrupted" in err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["arm.toml", "q.parquet"]
+
+
+FAULTY = """import sys
+from ulna.cli import main
+from ulna.study.study import Study
+
+def fail(_path):
+    raise KeyError("of our own making")
+
+Study.load = fail
+sys.argv = ["ulna", "identify", "study.toml"]
+main()
+"""
+
+
+def test_a_fault_of_ours_is_called_so(tmp_path: Path) -> None:
+    """One line and an exit code of its own; where it came from on request. It is never taken for "the answer is no"."""
+    done = subprocess.run([sys.executable, "-c", FAULTY], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 3
+    assert done.stderr.count("\n") == 1
+    assert "this is a fault of Ulna's" in done.stderr
+    assert "KeyError: 'of our own making'" in done.stderr
+    traced = subprocess.run(
+        [sys.executable, "-c", FAULTY],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        env=os.environ | {"ULNA_TRACEBACK": "1"},
+    )
+    assert "Traceback" in traced.stderr
+    assert traced.stderr.rstrip().endswith("KeyError: 'of our own making'")

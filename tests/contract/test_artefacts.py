@@ -35,6 +35,7 @@ EXAMPLES: dict[str, str] = {
     "plane": "size = [150, 150]",
     "distance": "offset = 12.5\nu_offset = 0.001\nscale = 1.001\nu_scale = 1e-6",
     "cylinder": "diameter = 60.0\nu = 0.002",
+    "orientation": 'rotation = "vector"\nu = 2e-5',
 }
 
 #: what may be left to the general answer

@@ -16,9 +16,9 @@ from tests.simulations import BAR, NOISE, off_over_u, saved, true_arm, write
 
 import ulna
 import ulna._core as _core
-from ulna import Arm, Effects
+from ulna import Arm, Effects, Payload
 from ulna.arm.arm import Arm as WholeArm
-from ulna.arm.conditions import CONDITIONS
+from ulna.arm.conditions import CONDITIONS, PAYLOAD
 from ulna.arm.directions import drawn, unit_of
 from ulna.arm.effects.effect import Effect
 from ulna.arm.effects.effects import EFFECTS, NONE, effect_named, extra_of, with_extras
@@ -56,7 +56,21 @@ features = { a = [500, 0, 300], b = [0, 550, 200], c = [-450, 100, 500], d = [-1
 """
 
 #: how a simulation is told what the effect depends on, where there is something to tell
-TOLD: dict[str, str] = {"temperature": "temperature = { mean = 22.0, spread = 4.0 }\n", "approach": ""}
+TOLD: dict[str, str] = {
+    "temperature": "temperature = { mean = 22.0, spread = 4.0 }\n",
+    "approach": "",
+    "payload": 'carried = ["none", "light", "heavy"]\n',
+}
+
+#: of an arm whose tip depends on what it carries
+LOADS = {"light": Payload(2.0, (0.0, 5.0, 40.0)), "heavy": Payload(6.0, (-20.0, 0.0, 90.0))}
+
+#: the same of poses
+STATED = {
+    "temperature": (22.0, 4.0),
+    "approach": None,
+    "payload": np.array([each.numbers for each in LOADS.values()]),
+}
 
 #: what may be left to the general answer is not here
 OWED = {
@@ -87,13 +101,14 @@ each_dependent = pytest.mark.parametrize("effect", [e for e in EFFECTS.values() 
 def affected(effect: Effect) -> Arm:
     assert effect.name in EXAMPLES, f"effect '{effect.name}' has no example here: add one to EXAMPLES"
     arm, own = true_arm(), EXAMPLES[effect.name]
-    return replace(arm, joints=tuple(replace(joint, effects=each) for joint, each in zip(arm.joints, own, strict=True)))
+    joints = tuple(replace(joint, effects=each) for joint, each in zip(arm.joints, own, strict=True))
+    return replace(arm, joints=joints, payloads=LOADS if effect.needs is PAYLOAD else {})
 
 
 def poses(count: int = 12) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """And every condition that there may be."""
     rng = np.random.default_rng(3)
-    drawn_of = {each.said: each.drawn(count, 1, 7, (22.0, 4.0), rng) for each in CONDITIONS}
+    drawn_of = {each.said: each.drawn(count, 1, 7, STATED[each.name], rng) for each in CONDITIONS}
     said = {each.said: each.of_touches(drawn_of[each.said], 1) for each in CONDITIONS}
     return rng.uniform(-1.5, 1.5, (count, 7)), said
 
@@ -235,7 +250,7 @@ def test_a_condition_that_is_missing_is_named(effect: Effect, tmp_path: Path) ->
         arm.tip(q_rad)
     simulated, _ = saved(spec(tmp_path, effect, 60))
     (group,) = simulated.study.readings
-    table = readings_table(group, list(arm.probes), None)
+    table = readings_table(group, list(arm.probes), None, arm.payloads)
     table.select(c for c in table.columns if not c.startswith(condition.name)).write_csv(tmp_path / "out" / "bar.csv")
     with pytest.raises(ulna.UlnaInputError, match=f"bar.csv.*{condition.unsaid}.*{condition.name}.*{effect.name}"):
         ulna.calibrate(ulna.Study.load(tmp_path / "out" / "study.toml"))

@@ -61,7 +61,7 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no child": ('<child link="l1"/>', "", ("joint 'j1' names no child link", '<child link="…"/>', "Add it")),
     "no parent": ('<parent link="l1"/>', "", ("joint 'j2' names no parent link", "Add it")),
     "no name": ('name="j2"', 'nome="j2"', ("the joint above link 'l2' has no name", "Add it")),
-    "sliding": ("continuous", "prismatic", ("joint 'j2' is of type 'prismatic'", "rotary", "--tip-link")),
+    "sliding without an end": ("continuous", "prismatic", ("joint 'j2' is prismatic", "no limits", "<limit")),
     "floating": (
         "continuous",
         "floating",
@@ -73,7 +73,7 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         '<axis xyz="0 2 0"/><mimic joint="j1"/>',
         ("joint 'j2' mimics joint 'j1'", "encoders of their own", "--tip-link"),
     ),
-    "one joint": ("continuous", "fixed", ("there are 1 rotary joints up to link 'ball_link'", "at least two")),
+    "one joint": ("continuous", "fixed", ("there are 1 joints that turn or slide up to link", "at least two")),
     "no joints": (URDF[URDF.index("  <joint") :], "</robot>", ("there are no joints", "at least two")),
     "two numbers": ('"0.2 0 0"', '"0.2 0"', ("joint 'j2', xyz", "'0.2 0'", "three numbers", "Correct it")),
     "no number": ('"0.2 0 0"', '"0.2 0 o"', ("joint 'j2', xyz", "'0.2 0 o'", "three numbers")),
@@ -160,7 +160,7 @@ def _branch(name: str, parent: str, kind: str, more: str = "") -> str:
 
 
 def test_a_base_in_the_middle(tmp_path: Path) -> None:
-    lift = _branch("lift", "world", "prismatic").replace('<link name="lift_link"/>', '<link name="world"/>')
+    lift = _branch("lift", "world", "floating").replace('<link name="lift_link"/>', '<link name="world"/>')
     lift = lift.replace("lift_link", "base")
     beside = (
         _branch("b1", "world", "revolute") + _branch("b2", "b1_link", "revolute") + _branch("b3", "b2_link", "fixed")
@@ -168,7 +168,7 @@ def test_a_base_in_the_middle(tmp_path: Path) -> None:
     path = tmp_path / "two.urdf"
     path.write_text(URDF.replace("</robot>", f"{lift}{beside}</robot>"))
     assert read_chain(path).tip_link == "b3_link"
-    with pytest.raises(UlnaInputError, match=r"joint 'lift' is of type 'prismatic'.*--base-link"):
+    with pytest.raises(UlnaInputError, match=r"joint 'lift' is of type 'floating'.*--base-link"):
         read_chain(path, "ball_link")
     for tip_link in ("ball_link", None):
         chain = read_chain(path, tip_link, "base")
@@ -193,7 +193,9 @@ def test_which_link_is_the_tip(tmp_path: Path) -> None:
     assert tip(ball=False) == "tool"
     assert tip(_branch("far", "tool", "fixed"), ball=False) == "far_link"
     # fingers that slide or mimic are no arms; one that turns by itself is
-    assert tip(_branch("slide", "tool", "prismatic"), _branch("end", "slide_link", "revolute"), ball=False) == "tool"
+    slide = _branch("slide", "tool", "prismatic", '<limit lower="0" upper="0.1"/>')
+    assert tip(slide, _branch("end", "slide_link", "fixed"), ball=False) == "tool"
+    assert tip(slide, _branch("end", "slide_link", "revolute"), ball=False) == "end_link"
     assert tip(_branch("copy", "tool", "revolute", '<mimic joint="j1"/>'), ball=False) == "tool"
     assert tip(_branch("more", "ball_link", "revolute")) == "more_link"
     with pytest.raises(UlnaInputError) as caught:

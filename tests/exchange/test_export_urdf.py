@@ -14,7 +14,7 @@ from tests.oracle import arms
 from tests.oracle.chain import Chain
 from tests.oracle.drawn import drawn_joints, drawn_tips
 from tests.small_study import says
-from tests.urdf_texts import Made, chains, poses, urdf, write
+from tests.urdf_texts import Made, chains, chains_that_slide, poses, urdf, write
 
 from ulna import Arm, Joint, Probe, UlnaInputError
 from ulna.exchange.export.source import not_carried, read_source, remark_not_carried
@@ -58,6 +58,20 @@ def test_import_export_import(tmp_path_factory: pytest.TempPathFactory, made: li
     assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
     assert np.array_equal(t_root_base, np.eye(4))
     assert [joint.model for joint in again.joints] == [joint.model for joint in arm.joints]
+
+
+@given(chains_that_slide)
+def test_slides_come_back_too(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -> None:
+    folder = tmp_path_factory.mktemp("urdf")
+    arm, _ = arm_from_chain(read_chain(write(folder, urdf(made)), "tip"))
+    path = write(folder, urdf_text(arm), "again.urdf")
+    again, _ = arm_from_chain(read_chain(path, "ball"))
+    q_rad = np.where(arm.slides, 100.0, 1.0) * poses(arm.n, 5)
+    assert np.abs(drawn_tips(path, "ball", q_rad) - arm.tip(q_rad)).max() < 1e-9
+    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
+    for one, other in zip(arm.joints, again.joints, strict=True):
+        assert one.type == other.type
+        assert one.limits_rad == (other.limits_rad and pytest.approx(other.limits_rad))
 
 
 def test_what_ros_demands_of_the_file(tmp_path: Path) -> None:
@@ -112,12 +126,12 @@ def test_what_is_said_of_the_numbers(tmp_path: Path) -> None:
     assert read_source(FOSSILS / "arm-1.toml", "a URDF", has_base=True).remarks == []
     document = json.loads((FOSSILS / "result-1.json").read_text())
     document["fit"] |= {"converged": False, "termination": "poor-minimum"}
-    document["parameters"] = [row for row in document["parameters"] if row["name"] != "joint.1.d"]
     (tmp_path / "result.json").write_text(json.dumps(document))
-    failed, _ = read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks
+    failed = read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks[0]
     says(failed, "result.json: the fit did not converge (poor-minimum)", "do not use these numbers")
     (tmp_path / "result.json").write_text(json.dumps(document | {"fit": 1, "parameters": [2, {"status": 3}]}))
-    assert read_source(tmp_path / "result.json", "a URDF", has_base=True).remarks == []
+    with pytest.raises(UlnaInputError, match="key 'parameters'"):
+        read_source(tmp_path / "result.json", "a URDF", has_base=True)
 
 
 def test_what_a_urdf_cannot_carry_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import ulna
 from ulna import InputWarning, Study, UlnaInputError
 from ulna.exchange.importers.ipa import JOINTS, import_ipa_ur10
 from ulna.exchange.importers.mukca import import_mukca
+from ulna.exchange.importers.robots import ur5
+from ulna.exchange.importers.serial_robots import import_serial_robots
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
 needs_data = pytest.mark.skipif(not DATA.is_dir(), reason="the measurements of ../shared/data are not there")
@@ -204,3 +207,33 @@ def test_the_real_ur10(tmp_path: Path) -> None:
         u, _, vt = np.linalg.svd(a.T @ b)
         turned = a @ u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt
         assert np.linalg.norm(turned - b, axis=1).mean() < 4
+
+
+def _targets(rows: np.ndarray, wrong: np.ndarray) -> str:
+    """Poses (N, n) in degrees of a UR5 whose links are a little longer than its maker says."""
+    true = ur5().with_parameters(ur5().parameters * 1.001)
+    measured = true.core.tip(np.radians(rows), 0)
+    target = ur5().core.tip(np.radians(rows), 0)
+    places = [f"{axis}_{what}" for what in ("t", "dif") for axis in "xyz"]
+    head = ["step_order", *places, *(f"joint_{k}" for k in range(1, 7))]
+    numbers = np.column_stack([np.arange(len(rows)), target, target - measured + wrong, rows])
+    return ",".join(head) + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in numbers.tolist())
+
+
+def test_serial_robots(tmp_path: Path) -> None:
+    """Where the target was is what was meant less the difference: the arm that made the table comes out."""
+    rng = np.random.default_rng(4)
+    for name, count in (("grid", 120), ("random", 20)):
+        rows = rng.uniform(-120.0, 120.0, (count, 6))
+        (tmp_path / f"{name}.csv").write_text(_targets(rows, np.zeros((count, 3))))
+    counts = import_serial_robots(tmp_path / "grid.csv", tmp_path / "out", "ur5", tmp_path / "random.csv")
+    assert counts == (120, 20)
+    result = ulna.calibrate(tmp_path / "out" / "study.toml")
+    assert result.after["coordinate_error_rms_mm"] < 1e-6 < result.before["coordinate_error_rms_mm"]
+    held_out = ulna.evaluate(result, tmp_path / "out" / "held-out.toml")
+    assert held_out.overall["coordinate_error_rms_mm"] < 1e-6
+    with pytest.raises(UlnaInputError, match=r"column 'joint_7' is missing.*or the right robot"):
+        import_serial_robots(tmp_path / "grid.csv", tmp_path / "out2", "wam")
+    with pytest.raises(UlnaInputError, match="got 'ur6'"):
+        import_serial_robots(tmp_path / "grid.csv", tmp_path / "out2", "ur6")
+    assert not (tmp_path / "out2").exists()

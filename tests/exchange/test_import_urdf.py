@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from scipy.spatial.transform import Rotation
 from tests.oracle.drawn import drawn_tips
-from tests.urdf_texts import Made, chains, poses, tips_in_root, urdf, write
+from tests.urdf_texts import Made, chains, chains_that_slide, poses, tips_in_root, urdf, write
 
 from ulna import Arm, UlnaInputError
 from ulna.arm.joint import Joint
@@ -69,6 +69,18 @@ def test_any_chain(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -
     q_rad = poses(arm.n, 5)
     assert np.abs(tips_in_root(arm, t_root_base, q_rad) - drawn_tips(path, "tip", q_rad)).max() < 1e-9
     assert np.abs(t_root_base[:3, :3].T @ t_root_base[:3, :3] - np.eye(3)).max() < 1e-14
+
+
+@given(chains_that_slide)
+def test_any_chain_that_slides(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -> None:
+    """In every pose the drawn tip, to rounding: of a prismatic joint the arm has an axis of the same direction."""
+    path = write(tmp_path_factory.mktemp("urdf"), urdf(made))
+    arm, t_root_base = arm_from_chain(read_chain(path, "tip"))
+    slides = [joint.slides for joint in made if joint.axis is not None]
+    assert [joint.slides for joint in arm.joints] == slides
+    assert all(joint.limits_rad == pytest.approx((-100.0, 400.0)) for joint in arm.joints if joint.slides)
+    q_rad = np.where(slides, 100.0, 1.0) * poses(arm.n, 5)
+    assert np.abs(tips_in_root(arm, t_root_base, q_rad) - drawn_tips(path, "tip", q_rad)).max() < 1e-9
 
 
 UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)

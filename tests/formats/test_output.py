@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from ulna import UlnaInputError
+from ulna.formats import arriving
 from ulna.formats.output import check_output, new_file, output_folder, write_file
 
 NAMES = ("result.json", "arm.toml")
@@ -76,6 +77,7 @@ def test_a_failed_move_brings_back_what_was_there(tmp_path: Path, monkeypatch: p
         return move(source, target)
 
     monkeypatch.setattr(Path, "replace", full)
+    monkeypatch.setattr(arriving, "swap", lambda *_: False)  # a disk that cannot: files go one by one
     with pytest.raises(UlnaInputError, match=r"cannot be written \(No space left on device\)"):
         _write(out, "2", force=True)
     assert _all(tmp_path) == {"out/result.json": "1", "out/arm.toml": "1"}

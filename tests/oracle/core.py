@@ -22,7 +22,7 @@ def core_arm(arm: Chain | Affected, names: Sequence[str] | None = None) -> _core
             ("encoder-harmonics", {"orders": arm.orders, "amplitudes_rad": arm.harmonics_rad}),
             ("backlash", {"backlash_rad": arm.backlash_rad}),
             ("link-expansion", {"expansion_per_k": arm.expansion_per_k}),
-            ("compliance", {name: getattr(arm, name) for name in COMPLIANCE}),
+            ("compliance", {name: getattr(arm, name) for name in COMPLIANCE} | {"payload_kg": np.zeros(1)}),
         ]
         given = [(kind, arrays) for kind, arrays in effects if all(array is not None for array in arrays.values())]
         return core_arm(arm.chain, names).with_effects(given)

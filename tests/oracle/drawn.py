@@ -22,7 +22,7 @@ def drawn_joints(path: Path, tip_link: str) -> list[ElementTree.Element]:
 
 
 def drawn_frames(path: Path, tip_link: str, q_rad: Array) -> Array:
-    """(N, n) joint angles in rad → (N, 4, 4) of the link in the root's frame, mm."""
+    """(N, n) joint angles in rad, of prismatic joints mm → (N, 4, 4) of the link in the root's frame, mm."""
     out = np.tile(np.eye(4), (len(q_rad), 1, 1))
     angles = iter(np.asarray(q_rad).T)
     for joint in drawn_joints(path, tip_link):
@@ -33,6 +33,11 @@ def drawn_frames(path: Path, tip_link: str, q_rad: Array) -> Array:
             step[:3, :3] = Rotation.from_euler("xyz", rpy).as_matrix()  # lower case: about fixed axes
             step[:3, 3] = [1000 * float(part) for part in origin.get("xyz", "0 0 0").split()]
         out = out @ step
+        if joint.get("type") == "prismatic":
+            shifted = np.tile(np.eye(4), (len(q_rad), 1, 1))
+            axis = np.array([float(part) for part in joint.find("axis").get("xyz").split()])
+            shifted[:, :3, 3] = np.outer(next(angles), axis / np.linalg.norm(axis))
+            out = out @ shifted
         if joint.get("type") in TURNING:
             element = joint.find("axis")
             axis = np.array([float(part) for part in (element.get("xyz") if element is not None else "1 0 0").split()])

@@ -70,6 +70,12 @@ impl Arm {
         Ok(Arm { inner: self.inner.with_effects(effects).map_err(raise)? })
     }
 
+    /// Of each joint how far it slides at the most, mm; NaN of one that turns.
+    fn with_slides(&self, slides_mm: PyReadonlyArray1<'_, f64>) -> PyResult<Arm> {
+        let slides_mm: Vec<Option<f64>> = slice(&slides_mm).iter().map(|&mm| (!mm.is_nan()).then_some(mm)).collect();
+        Ok(Arm { inner: self.inner.with_slides(&slides_mm).map_err(raise)? })
+    }
+
     #[getter]
     fn joints(&self) -> usize {
         self.inner.encoders()
@@ -111,7 +117,7 @@ impl Arm {
         Ok(self.inner.reach_mm(probe))
     }
 
-    #[pyo3(signature = (q_rad, probe=None, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe=None, warmth_k=None, approach=None, payload=None))]
     fn tip<'py>(
         &self,
         py: Python<'py>,
@@ -119,8 +125,9 @@ impl Arm {
         probe: Option<Bound<'py, PyAny>>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?;
         let (poses, count) = (read.angles(), read.count);
         let chain = Chain::new(&self.inner);
         let mut out = vec![0.0; 3 * count];
@@ -151,7 +158,7 @@ impl Arm {
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None, payload=None))]
     fn tip_plain<'py>(
         &self,
         py: Python<'py>,
@@ -159,16 +166,17 @@ impl Arm {
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?;
         let (poses, n) = (read.angles(), self.inner.encoders());
         let tip = |row: usize| -> [f64; 3] { kinematics::tip_mm(&self.inner, probe, poses.pose(row, n)).coords.into() };
         let out = py.detach(|| (0..read.count).flat_map(tip).collect());
         array2(py, out, 3)
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None, payload=None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -176,9 +184,10 @@ impl Arm {
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let tip = self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?;
         let poses = read.angles();
         let (count, probes) = (self.inner.parameter_count(), self.inner.probes().len());
         let out = py.detach(|| {
@@ -194,7 +203,7 @@ impl Arm {
         PyArray1::from_vec(py, out).reshape([read.count, 3, count])
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None, payload=None))]
     fn encoder_jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -202,9 +211,10 @@ impl Arm {
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?;
         let (poses, n) = (read.angles(), self.inner.encoders());
         let of_pose = |row: usize| {
             let jacobian = kinematics::encoder_jacobian(&self.inner, probe, poses.pose(row, n));
@@ -214,7 +224,7 @@ impl Arm {
         PyArray1::from_vec(py, out).reshape([read.count, 3, n])
     }
 
-    #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe, columns, covariance, warmth_k=None, approach=None, payload=None))]
     #[allow(clippy::too_many_arguments)]
     fn tip_covariance<'py>(
         &self,
@@ -225,9 +235,11 @@ impl Arm {
         covariance: PyReadonlyArray2<'py, f64>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.probe(probe)?;
-        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?, self.columns(&columns)?);
+        let (read, columns) =
+            (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?, self.columns(&columns)?);
         let covariance = rows(&covariance, columns.len(), "the covariance")?;
         if covariance.len() != columns.len() * columns.len() {
             return Err(UlnaError::new_err("the covariance is not square"));
@@ -238,7 +250,7 @@ impl Arm {
         array2(py, out, 6)
     }
 
-    #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe, columns, directions, warmth_k=None, approach=None, payload=None))]
     #[allow(clippy::too_many_arguments)]
     fn direction_effect<'py>(
         &self,
@@ -249,9 +261,11 @@ impl Arm {
         directions: PyReadonlyArray2<'py, f64>,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.probe(probe)?;
-        let (read, columns) = (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?, self.columns(&columns)?);
+        let (read, columns) =
+            (Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?, self.columns(&columns)?);
         let directions = rows(&directions, columns.len(), "the directions")?;
         let poses = read.angles();
         let out = py
@@ -259,7 +273,7 @@ impl Arm {
         Ok(array1(py, &out))
     }
 
-    #[pyo3(signature = (points_mm, limits_rad, seed, probe=0, tries=40, warmth_k=None, approach=None))]
+    #[pyo3(signature = (points_mm, limits_rad, seed, probe=0, tries=40, warmth_k=None, approach=None, payload=None))]
     #[allow(clippy::type_complexity, clippy::too_many_arguments)]
     fn pose_for_points<'py>(
         &self,
@@ -271,6 +285,7 @@ impl Arm {
         tries: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'py, f64>>,
         approach: Option<PyReadonlyArrayDyn<'py, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'py, f64>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<bool>>)> {
         self.probe(probe)?;
         let points = rows(&points_mm, 3, "the points")?;
@@ -281,7 +296,7 @@ impl Arm {
             return Err(UlnaError::new_err(message));
         }
         let limits = Limits { range_rad: limits.chunks_exact(2).map(|l| (l[0], l[1])).collect() };
-        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), points.len() / 3, n)?;
+        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), payload.as_ref(), points.len() / 3, n)?;
         let wanted = (points.as_ref(), told.conditions());
         let watch = crate::watch::Watch::new(None);
         let found = py.detach(|| postures_for_points(&self.inner, probe, wanted, &limits, tries, seed, &watch));
@@ -292,16 +307,17 @@ impl Arm {
         Ok((array2(py, postures, n)?, PyArray1::from_vec(py, reached)))
     }
 
-    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None))]
+    #[pyo3(signature = (q_rad, probe=0, warmth_k=None, approach=None, payload=None))]
     fn check_jacobian(
         &self,
         q_rad: PyReadonlyArray2<'_, f64>,
         probe: usize,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
         approach: Option<PyReadonlyArrayDyn<'_, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<f64> {
         self.probe(probe)?;
-        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref())?;
+        let read = Read::new(self, &q_rad, warmth_k.as_ref(), approach.as_ref(), payload.as_ref())?;
         Ok(ulna::kinematics::propagate::check_jacobian(&self.inner, probe, read.angles()))
     }
 }
@@ -319,11 +335,12 @@ impl<'a> Read<'a> {
         q_rad: &'a PyReadonlyArray2<'_, f64>,
         warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
         approach: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        payload: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<Read<'a>> {
         let n = arm.inner.encoders();
         let q_rad = rows(q_rad, n, "the encoder angles")?;
         let count = q_rad.len() / n;
-        Ok(Read { told: Told::new(warmth_k, approach, count, n)?, q_rad, count })
+        Ok(Read { told: Told::new(warmth_k, approach, payload, count, n)?, q_rad, count })
     }
 
     fn angles(&self) -> Angles<'_> {

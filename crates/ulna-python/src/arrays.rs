@@ -4,7 +4,7 @@ use crate::errors::{UlnaError, raise};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use std::borrow::Cow;
-use ulna::kinematics::Conditions;
+use ulna::kinematics::{Conditions, PAYLOAD};
 
 /// A one-dimensional array as a slice, copied where it is not contiguous.
 pub fn slice<'a, T: numpy::Element + Copy>(array: &'a PyReadonlyArray1<'_, T>) -> Cow<'a, [T]> {
@@ -34,17 +34,19 @@ pub fn rows<'a>(array: &'a PyReadonlyArray2<'_, f64>, columns: usize, what: &str
 pub struct Told<'a> {
     warmth_k: Cow<'a, [f64]>,
     approach: Cow<'a, [f64]>,
+    payload: Cow<'a, [f64]>,
 }
 
 impl<'a> Told<'a> {
     /// Temperatures above 20 °C of `count` poses, one each or one for each joint, and from which side each joint was
-    /// approached; none: empty.
+    /// approached, and what was carried: mass, kg, and its centre, mm, of each; none: empty.
     ///
     /// # Errors
-    /// Another shape, or an approach other than -1, 0 or +1.
+    /// Another shape, an approach other than -1, 0 or +1, or a payload that no arm carries.
     pub fn new(
         warmth_k: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
         approach: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
+        payload: Option<&'a PyReadonlyArrayDyn<'_, f64>>,
         count: usize,
         joints: usize,
     ) -> PyResult<Told<'a>> {
@@ -53,6 +55,7 @@ impl<'a> Told<'a> {
         let told = Told {
             warmth_k: shaped(warmth_k, &[&[count], &[count, joints]], "the temperatures", &either)?,
             approach: shaped(approach, &[&[count, joints]], "the approaches", &of_joints)?,
+            payload: shaped(payload, &[&[count, PAYLOAD]], "the payloads", &format!("({count}, {PAYLOAD})"))?,
         };
         told.conditions().check("poses", count, joints).map_err(raise)?;
         Ok(told)
@@ -60,7 +63,7 @@ impl<'a> Told<'a> {
 
     /// For the core.
     pub fn conditions(&self) -> Conditions<'_> {
-        Conditions { warmth_k: &self.warmth_k, approach: &self.approach }
+        Conditions { warmth_k: &self.warmth_k, approach: &self.approach, payload: &self.payload }
     }
 }
 

@@ -32,7 +32,9 @@ impl Problem {
 
     #[pyo3(signature = (kind, artefact, *, q_rad, probe, placement=None, feature=None, p_rad=None, measured_mm=None,
                         features_mm=None, labels=None, feature_u_mm=None, features_fitted=false, frame=None,
-                        dimensions=vec![], inside=false, balls_mm=None, warmth_k=None, approach=None, p_approach=None))]
+                        dimensions=vec![], inside=false, balls_mm=None, rotation_rad=None, rotation_u_rad=None,
+                        warmth_k=None, approach=None, p_approach=None,
+                        payload=None))]
     #[allow(clippy::too_many_arguments)]
     fn add(
         &mut self,
@@ -52,9 +54,12 @@ impl Problem {
         dimensions: Vec<(String, f64, f64, bool)>,
         inside: bool,
         balls_mm: Option<PyReadonlyArray1<'_, f64>>,
+        rotation_rad: Option<PyReadonlyArray2<'_, f64>>,
+        rotation_u_rad: Option<PyReadonlyArray1<'_, f64>>,
         warmth_k: Option<PyReadonlyArrayDyn<'_, f64>>,
         approach: Option<PyReadonlyArrayDyn<'_, f64>>,
         p_approach: Option<PyReadonlyArrayDyn<'_, f64>>,
+        payload: Option<PyReadonlyArrayDyn<'_, f64>>,
     ) -> PyResult<usize> {
         let n = self.inner.arm().encoders();
         let q_rad = rows(&q_rad, n, "the poses")?;
@@ -63,6 +68,8 @@ impl Problem {
         let features = features_mm.as_ref().map(|features| rows(features, 3, "the features")).transpose()?;
         let features = features.as_ref().map(|features| features.as_chunks::<3>().0);
         let (placement, measured_mm) = (placement.as_ref().map(slice), measured_mm.as_ref().map(slice));
+        let rotation = rotation_rad.as_ref().map(|rotation| rows(rotation, 3, "the orientations")).transpose()?;
+        let rotation_u_rad = rotation_u_rad.as_ref().map(slice);
         let (feature_u_mm, balls_mm) = (feature_u_mm.as_ref().map(slice), balls_mm.as_ref().map(slice));
         let mut sizes = Vec::with_capacity(dimensions.len());
         for (name, value, u, fitted) in &dimensions {
@@ -79,9 +86,9 @@ impl Problem {
             inside,
             balls_mm: balls_mm.as_deref(),
         };
-        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), q_rad.len() / n, n)?;
+        let told = Told::new(warmth_k.as_ref(), approach.as_ref(), payload.as_ref(), q_rad.len() / n, n)?;
         let second = p_rad.as_ref().map(|p_rad| {
-            let told = Told::new(warmth_k.as_ref(), p_approach.as_ref(), p_rad.len() / n, n)?;
+            let told = Told::new(warmth_k.as_ref(), p_approach.as_ref(), payload.as_ref(), p_rad.len() / n, n)?;
             PyResult::Ok((p_rad, told))
         });
         let second = second.transpose()?;
@@ -92,6 +99,8 @@ impl Problem {
             feature: feature.as_deref(),
             placement: placement.as_deref(),
             measured_mm: measured_mm.as_deref(),
+            rotation_rad: rotation.as_ref().map(|each| each.as_chunks::<3>().0),
+            rotation_u_rad: rotation_u_rad.as_deref(),
         };
         self.inner.add(kind, &stated, &rows).map_err(raise)
     }

@@ -167,7 +167,8 @@ fn main() {
     }
 
     let body = Body { mass_kg: 1.0, centre_mm: [0.0, 0.0, 50.0] };
-    let compliance = Compliance { rad_per_nm: vec![1e-6; 7], bodies: vec![body; 7], gravity: [0.0, 0.0, -1.0] };
+    let compliance =
+        Compliance { rad_per_nm: vec![1e-6; 7], bodies: vec![body; 7], gravity: [0.0, 0.0, -1.0], payload_kg: 0.0 };
     for (name, effects) in [
         ("harmonics 1", Effects { harmonics: Some(Harmonics::zero(&[1], 7)), ..Effects::default() }),
         ("harmonics 1, 2", Effects { harmonics: Some(Harmonics::zero(&[1, 2], 7)), ..Effects::default() }),

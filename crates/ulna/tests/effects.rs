@@ -187,7 +187,7 @@ fn half_the_backlash_lies_on_either_side() {
     let approach = [1.0, -1.0, 0.0, 1.0, 1.0, -1.0];
     // approached so, an arm with play stands where one without stands at other angles
     let moved: Vec<f64> = (0..JOINTS).map(|i| q_rad[i] + 0.5 * backlash[i] * approach[i]).collect();
-    let conditions = Conditions { warmth_k: &[], approach: &approach };
+    let conditions = Conditions { approach: &approach, ..Conditions::default() };
     let there = tip_mm(&bent, 0, Pose { q_rad: &q_rad, conditions });
     assert!((there - tip_mm(&arm, 0, &moved)).norm() < 1e-10);
     assert!((tip_mm(&bent, 0, &q_rad) - tip_mm(&arm, 0, &q_rad)).norm() < 1e-12);
@@ -318,7 +318,7 @@ fn an_approach_is_from_one_side_or_the_other() {
              (unknown) was expected",
         ),
     ] {
-        let told = Told { warmth_k: vec![], approach };
+        let told = Told { warmth_k: vec![], approach, payload: vec![] };
         let rows = Rows {
             poses: ulna::kinematics::Angles::cold(&q_rad),
             second: Some(told.at(&q_rad)),

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Told, angles, any_arm, any_effects, any_full_arm, rng};
+use common::{Told, angles, any_arm, any_effects, any_full_arm, rng, sliding};
 use proptest::prelude::*;
 use rand::RngExt;
 use ulna::arm::Arm;
@@ -16,9 +16,16 @@ fn any(seed: u64, encoders: usize, rows: usize) -> (Arm, Vec<f64>, Told) {
     let mut rng = rng(seed);
     let arm = if rng.random() { any_arm(&mut rng, encoders) } else { any_full_arm(&mut rng, encoders) };
     let arm = if rng.random() { arm.with_effects(any_effects(&mut rng, encoders)).unwrap() } else { arm };
-    let q = angles(&mut rng, encoders * rows);
+    let arm = if rng.random() { sliding(&arm, &mut rng) } else { arm };
+    let mut q = angles(&mut rng, encoders * rows);
+    for (i, value) in q.iter_mut().enumerate() {
+        *value *= if arm.slides(i % encoders) { 100.0 } else { 1.0 };
+    }
     let (warmths, approaches) = ([0, 1, encoders][rng.random_range(0..3)], [0, encoders][rng.random_range(0..2)]);
-    let told = Told::any(&mut rng, rows, warmths, approaches);
+    let mut told = Told::any(&mut rng, rows, warmths, approaches);
+    if rng.random() {
+        told.payload.clear();
+    }
     (arm, q, told)
 }
 

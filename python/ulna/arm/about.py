@@ -56,6 +56,7 @@ def _joint(number: int, joint: Joint, tilted: bool, bare: bool) -> list[str]:
         fixed(joint.alpha_rad, 6),
         *[fixed(joint.beta_rad, 6) if hayati else "–"] * tilted,
     ]
+    name += ", slides" if joint.slides else ""
     return [name, *(["–"] * len(numbers) if bare else numbers), {1: "+1", -1: "-1"}.get(joint.sign, "not known")]
 
 

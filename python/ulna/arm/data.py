@@ -8,7 +8,8 @@ What an arm does beyond its geometry is in `ulna.arm.effects.effects`.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
@@ -16,12 +17,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ulna.arm.conditions import Condition, Conditions
+from ulna.arm.conditions import PAYLOAD, Condition, Conditions
 from ulna.arm.covariance import ParameterCovariance
 from ulna.arm.effects import effects
 from ulna.arm.effects.effect import Effect
 from ulna.arm.effects.effects import Effects
 from ulna.arm.joint import Joint
+from ulna.arm.payload import NOTHING_CARRIED, Payload
 from ulna.arm.probe import Probe
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError, nearest
@@ -32,6 +34,9 @@ if TYPE_CHECKING:
 
 Said = ArrayLike | None
 """What people say of poses beside their angles; None: nothing."""
+
+Loads = str | Sequence[str] | ArrayLike | None
+"""What they say of what was carried: a name or numbers, of all poses or of each."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +54,8 @@ class ArmData:
     models of the literature (Gao 2009; Santolaria and Aguilar 2010)."""
     gravity: tuple[float, float, float] = (0.0, 0.0, -1.0)
     """Where gravity pulls, in the base frame; its length does not matter. For joints that give way."""
+    payloads: dict[str, Payload] = field(default_factory=dict)
+    """What it may carry beside its own masses, by name. For joints that give way."""
 
     @property
     def n(self) -> int:
@@ -81,7 +88,9 @@ class ArmData:
                 np.array([probe.tip_mm for probe in self.probes.values()]).reshape(-1, 3),
                 self.full_last_link,
             )
-            return arm.with_effects(effects.for_core(self._effects, self.gravity))
+            if self.slides.any():
+                arm = arm.with_slides(np.array([_travel_mm(joint) for joint in self.joints]))
+            return arm.with_effects(effects.for_core(self._effects, self.gravity, self.heaviest_kg))
         except _core.UlnaError as error:
             raise UlnaInputError(f"arm '{self.name}': {error}") from None
 
@@ -107,6 +116,23 @@ class ArmData:
         return self.core.signs
 
     @property
+    def slides(self) -> Bool:
+        """(n,) true for prismatic joints: what stands for their encoder's angle is mm."""
+        return np.array([joint.slides for joint in self.joints])
+
+    def each(self, rad: float, mm: float) -> F64:
+        """(n,) a number for each encoder: one for those of joints that turn, another for those of joints that slide."""
+        return np.where(self.slides, mm, rad)
+
+    def check_turns(self, label: object, what: str) -> None:
+        """All its joints turn, as `what` ("plans") need it. label: of the file. Raises UlnaInputError."""
+        if self.slides.any():
+            raise UlnaInputError(
+                f"{label}: joint {int(np.argmax(self.slides)) + 1} of arm '{self.name}' is prismatic, which {what} do "
+                "not cover; expected an arm whose joints all turn. Name another arm."
+            )
+
+    @property
     def unknown_signs(self) -> Bool:
         """(n,) true for joints of which nobody knows which way the encoder counts (sign 0)."""
         return np.array([joint.sign == 0 for joint in self.joints])
@@ -122,9 +148,43 @@ class ArmData:
         return effects.effects_of(self._effects)
 
     @property
-    def needs(self) -> dict[Condition, Effect]:
+    def uses(self) -> dict[Condition, Effect]:
         """On which conditions of a pose its tip depends, each with the effect that asks for it."""
         return effects.needs_of(self._effects)
+
+    @property
+    def needs(self) -> dict[Condition, Effect]:
+        """Those of them of which nothing is usual: they must be said of every pose."""
+        return {each: effect for each, effect in self.uses.items() if each.must_be_said(self.payloads)}
+
+    @property
+    def heaviest_kg(self) -> float:
+        """Of what it may carry beside its own masses."""
+        return max((payload.mass_kg for payload in self.payloads.values()), default=0.0)
+
+    def load_named(self, name: str) -> F64:
+        """(4,) kg and mm: what is carried, by name; "none": nothing. Raises UlnaInputError with the nearest known
+        name."""
+        if name == NOTHING_CARRIED:
+            return np.zeros(4)
+        if name not in self.payloads:
+            known = [*self.payloads, NOTHING_CARRIED]
+            raise UlnaInputError(f"arm '{self.name}' has no payload '{name}'.{nearest(name, known)}")
+        return self.payloads[name].numbers
+
+    def loads_of(self, given: Any) -> F64 | None:
+        """(4,) or (N, 4) of a name, of a name for each pose, or of such numbers. Raises UlnaInputError for an unknown
+        name."""
+        if given is None:
+            return None
+        if isinstance(given, str):
+            return self.load_named(given)
+        each = np.asarray(given)
+        if each.dtype.kind not in "OUT":
+            return each.astype(np.float64)
+        names, code = np.unique(each.astype(str), return_inverse=True)
+        found: F64 = np.array([self.load_named(name) for name in names.tolist()]).reshape(-1, 4)[code]
+        return found
 
     def with_parameters(self, parameters: ArrayLike) -> Self:
         """The same arm with other numbers, (P,) in the order of `parameter_names`, and no uncertainty."""
@@ -179,37 +239,58 @@ class ArmData:
             raise UlnaInputError(f"arm '{self.name}' has no probe '{name}'.{nearest(name, names)}")
         return names.index(name)
 
-    def tip(self, q_rad: ArrayLike, probe: str | None = None, temperature_c: Said = None, approach: Said = None) -> F64:
+    def tip(
+        self,
+        q_rad: ArrayLike,
+        probe: str | None = None,
+        temperature_c: Said = None,
+        approach: Said = None,
+        payload: Loads = None,
+    ) -> F64:
         """Encoder angles (N, n) rad → tip positions (N, 3) mm in the base frame; (n,) → (3,).
 
         temperature_c: one number, (N,) or (N, n) per joint's link, °C. approach: (N, n) or (n,), +1 where the encoder's
-        angle had been rising, -1 where it had been falling, 0 where nobody knows. Raises UlnaInputError where the tip
-        depends on one of them (`needs`) and it is not given.
+        angle had been rising, -1 where it had been falling, 0 where nobody knows. payload: what was carried, the name
+        of one of `payloads` or "none", of all poses or of each; or (4,) or (N, 4) numbers: mass, kg, and x, y, z of its
+        centre, mm. Raises UlnaInputError where the tip depends on one of them (`needs`) and it is not given.
         """
         q, single = self._angles(q_rad)
-        p_mm = self.core.tip(q, self.probe_index(probe), **self.conditions(len(q), temperature_c, approach))
+        at = self.conditions(len(q), temperature_c, approach, payload)
+        p_mm = self.core.tip(q, self.probe_index(probe), **at)
         return p_mm[0] if single else p_mm
 
     def jacobian(
-        self, q_rad: ArrayLike, probe: str | None = None, temperature_c: Said = None, approach: Said = None
+        self,
+        q_rad: ArrayLike,
+        probe: str | None = None,
+        temperature_c: Said = None,
+        approach: Said = None,
+        payload: Loads = None,
     ) -> F64:
         """(N, n) rad → (N, 3, parameters): ∂p/∂parameter in mm for a unit of each; (n,) → (3, parameters).
 
-        temperature_c and approach as for `tip`.
+        temperature_c, approach and payload as for `tip`.
         """
         q, single = self._angles(q_rad)
-        jacobian = self.core.jacobian(q, self.probe_index(probe), **self.conditions(len(q), temperature_c, approach))
+        at = self.conditions(len(q), temperature_c, approach, payload)
+        jacobian = self.core.jacobian(q, self.probe_index(probe), **at)
         return jacobian[0] if single else jacobian
 
-    def conditions(self, count: int, temperature_c: Said = None, approach: Said = None) -> Conditions:
+    def conditions(
+        self, count: int, temperature_c: Said = None, approach: Said = None, payload: Loads = None
+    ) -> Conditions:
         """Of so many poses, as the core takes them: those that the arm's tip depends on.
 
         Raises UlnaInputError where it depends on one that is not given for every pose.
         """
-        said = {"temperature_c": temperature_c, "approach": approach}
-        found = Conditions()
-        for condition, effect in self.needs.items():
+        # names of loads are asked for where something gives way to them
+        loads = self.loads_of(payload) if PAYLOAD in self.uses else None
+        said = {"temperature_c": temperature_c, "approach": approach, "payload": loads}
+        found, needs = Conditions(), self.needs
+        for condition, effect in self.uses.items():
             given = said[condition.said]
+            if given is None and condition not in needs:
+                continue
             if given is None or not condition.known(given):
                 raise UlnaInputError(
                     f"arm '{self.name}': its {effect.whose} {effect.does}, but {condition.missing}; expected "
@@ -246,3 +327,9 @@ class ArmData:
         if q.ndim != 2 or q.shape[1] != self.n:
             raise ValueError(f"q_rad: expected (N, {self.n}) encoder angles in rad, got {np.shape(q_rad)}")
         return q, single
+
+
+def _travel_mm(joint: Joint) -> float:
+    """How far a prismatic joint slides from its encoder's zero at the most; NaN of one that turns."""
+    low, high = joint.limits_rad or (math.nan, math.nan)
+    return max(-low, high) if joint.slides else math.nan

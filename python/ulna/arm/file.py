@@ -11,6 +11,8 @@ from ulna.arm.data import ArmData
 from ulna.arm.frames.modified import from_modified
 from ulna.arm.joint_file import joint_document, joint_of
 from ulna.arm.modified_file import check_modified
+from ulna.arm.parameters_file import check_parameters
+from ulna.arm.payload import payload_documents, payloads_of
 from ulna.arm.probe import Probe
 from ulna.arm.tables import ArmFile, CylindricalTip, ProbeTable
 from ulna.formats.models import fill
@@ -70,6 +72,7 @@ def arm_of_result(document: dict[str, Any], path: Path, make: type[AnyArm]) -> A
     whole = {"format": "ulna-arm/1", "units": {"length": "mm", "angle": "rad"}, **arm}
     found = _arm(fill(ArmFile, whole, path), path, make)
     known = covariance_of_result(document, found, path)
+    check_parameters(document, found, known, path)
     return dataclasses.replace(found, uncertainty=known.of(found.parameter_names))
 
 
@@ -86,9 +89,16 @@ def _arm(file: ArmFile, path: Path, make: type[AnyArm]) -> AnyArm:
     x, y, z = file.gravity or (0.0, 0.0, -1.0)
     if not (x or y or z):
         raise UlnaInputError(f"{path}: key 'gravity': got {file.gravity}, no direction; expected, say, [0, 0, -1].")
-    arm = make(file.name or path.stem, joints, probes, full_last_link=file.full_last_link, gravity=(x, y, z))
+    arm = make(
+        file.name or path.stem,
+        joints,
+        probes,
+        full_last_link=file.full_last_link,
+        gravity=(x, y, z),
+        payloads=payloads_of(file.payload, file.units, path),
+    )
     for effect in arm.effects:
-        effect.check_joints([joint.effects for joint in joints], path)
+        effect.check_joints([joint.effects for joint in joints], path, arm.heaviest_kg)
     return arm
 
 
@@ -115,6 +125,8 @@ def arm_document(arm: ArmData) -> dict[str, Any]:
         head["full_last_link"] = True
     if arm.gravity != (0.0, 0.0, -1.0):
         head["gravity"] = list(arm.gravity)
+    if arm.payloads:
+        head["payload"] = payload_documents(arm.payloads)
     return {**head, "joint": joints, "probe": probes}
 
 
@@ -129,6 +141,8 @@ def arm_toml(arm: ArmData) -> str:
         'units = { length = "mm", angle = "rad" }',
     ]
     lines += [f"{key} = {toml_value(document[key])}" for key in ("full_last_link", "gravity") if key in document]
+    for name, table in document.get("payload", {}).items():
+        lines += ["", f"[payload.{toml_key(name)}]", *(f"{key} = {toml_value(value)}" for key, value in table.items())]
     for table in document["joint"]:
         lines += ["", "[[joint]]", *(f"{key} = {toml_value(value)}" for key, value in table.items())]
     for name, table in document["probe"].items():

@@ -9,7 +9,8 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from ulna.arm.effects.effects import EFFECTS, Effects, joint_tables
-from ulna.arm.joint import Joint
+from ulna.arm.joint import Joint, JointType
+from ulna.arm.prismatic import check_prismatic
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
@@ -38,9 +39,12 @@ class GeometryTable(Strict):
     sign: Annotated[Literal[1, -1, 0], BeforeValidator(_no_truth)] = 1
     """0: nobody knows which way the encoder counts; a calibration finds it."""
     model: Literal["dh", "hayati"] = "dh"
+    type: JointType = "rotary"
+    """prismatic: it does not turn, it slides along its axis; its encoder reads lengths."""
     name: str | None = None
     limits: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    """Lowest and highest encoder angle, in the file's angle unit."""
+    """Lowest and highest encoder angle, in the file's angle unit; of a prismatic joint in its length unit. Required of
+    such a joint."""
     endless: bool = False
     """It turns on and on, and its encoder counts the turns: such a joint has no limits."""
     counts_per_turn: Annotated[float, Field(gt=0)] | None = None
@@ -67,6 +71,11 @@ def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Pat
             f"{path}: key 'joint.{number}.endless': got true, but the joint has limits, {table.limits}; expected one "
             "of them. Remove the limits if it turns on and on, else endless."
         )
+    beyond = Effects(**_beyond(table, number, units, path))
+    slides = table.type == "prismatic"
+    if slides:
+        check_prismatic(table, beyond, number, path)
+    unit = units.mm if slides else units.rad
     return Joint(
         theta0_rad=(table.theta0 or 0.0) * units.rad,
         alpha_rad=(table.alpha or 0.0) * units.rad,
@@ -76,10 +85,11 @@ def joint_of(table: JointTable, number: int, bare: bool, units: Units, path: Pat
         sign=table.sign,
         model=table.model,
         name=table.name,
-        limits_rad=None if table.limits is None else (table.limits[0] * units.rad, table.limits[1] * units.rad),
+        limits_rad=None if table.limits is None else (table.limits[0] * unit, table.limits[1] * unit),
         endless=table.endless,
         counts_per_turn=table.counts_per_turn,
-        effects=Effects(**_beyond(table, number, units, path)),
+        effects=beyond,
+        type=table.type,
     )
 
 
@@ -123,6 +133,8 @@ def joint_document(joint: Joint, bare: bool) -> dict[str, Any]:
     table |= {"sign": joint.sign}
     if joint.model != "dh":
         table |= {"model": joint.model}
+    if joint.slides:
+        table |= {"type": joint.type}
     if joint.limits_rad is not None:
         table |= {"limits": list(joint.limits_rad)}
     if joint.endless:

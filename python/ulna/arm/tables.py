@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.frames.modified import Convention
 from ulna.arm.joint_file import JointTable
+from ulna.arm.payload import PayloadTable
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
 
@@ -59,6 +60,8 @@ class ArmFile(Strict):
     """The last joint has a link of its own, to whose end the probes are fixed: four parameters more than needed."""
     gravity: Annotated[list[float], Field(min_length=3, max_length=3)] | None = None
     """Where gravity pulls, in the base frame; down along axis 1, [0, 0, -1], where it is not given. For compliance."""
+    payload: dict[str, PayloadTable] | None = None
+    """What the arm may carry beside its own masses, by name; readings say which. For compliance."""
     joint: Annotated[list[JointTable], Field(min_length=2)]
     """One table per encoder, from the base to the probe."""
     probe: Annotated[dict[str, ProbeTable], Field(min_length=1)]

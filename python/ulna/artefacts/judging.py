@@ -19,6 +19,8 @@ class Tips:
     """(N,) diameter of the ball; 0 where it does not matter."""
     code: I64
     """(N,) numbers of the placements."""
+    turned: F64 | None = None
+    """(N, 3, 3) from the probe's frame to the base frame; of kinds whose rows say how a target was turned."""
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,8 @@ class Kind(ABC):
     """Whether a row names the feature that was touched."""
     measured_column: ClassVar[str | None] = None
     """Column of a distance that was measured along with the row."""
+    turned: ClassVar[bool] = False
+    """Whether a row says how a target on the last link was turned."""
     residual_columns: ClassVar[tuple[str, ...]]
     """Columns of a table of residuals that its readings have: the feature first, where rows name one."""
     scattered: ClassVar[bool]
@@ -81,6 +83,11 @@ class Kind(ABC):
         """Whether the readings can say anything. Raises UlnaInputError."""
         return
 
+    def check_noise(self, group: Readings, label: str) -> None:
+        """Whether all is stated that its readings need beside the noise of the arm; label: what messages call the
+        study. Raises UlnaInputError."""
+        return
+
     @abstractmethod
     def errors(self, readings: Readings, tips: Tips) -> dict[str, Errors]:
         """What a metrologist reads, from the tips alone: quantity (`ulna.artefacts.quantities`) → single errors."""
@@ -97,6 +104,14 @@ class Kind(ABC):
         self, stated: Artefact, true: Artefact, touches: Touches, places: int, rng: np.random.Generator
     ) -> F64 | None:
         """(N,) what is measured along with each row, in so many placements; None where nothing is."""
+        return None
+
+    def seen(
+        self, stated: Artefact, true: Artefact, held: F64, axes: F64, rng: np.random.Generator
+    ) -> tuple[F64, F64 | None] | None:
+        """How an instrument says that a target was turned, (N, 3) rotation vectors, and (N,) their standard
+        uncertainty, rad; None where nothing is seen. held: (N, 3, 3) from the probe's frame to the base frame; axes:
+        (N, 3, 3) those of the artefact as rows, base frame."""
         return None
 
     def check_simulated(self, table: TouchedTable, key: str) -> None:

@@ -11,6 +11,7 @@ from ulna.artefacts.cylinder import Cylinder
 from ulna.artefacts.distance import Distance
 from ulna.artefacts.kind import Kind
 from ulna.artefacts.length import Length
+from ulna.artefacts.orientation import Orientation
 from ulna.artefacts.plane import Plane
 from ulna.artefacts.points import Points
 from ulna.artefacts.seat import Seat
@@ -31,6 +32,7 @@ KINDS: dict[str, Kind] = {
         Plane(),
         Cylinder(),
         Distance(),
+        Orientation(),
     )
 }
 """By name, in the order in which messages list them."""

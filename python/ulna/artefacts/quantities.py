@@ -112,6 +112,13 @@ QUANTITIES = (
         "distance error",
         "dist.",
     ),
+    Quantity(
+        "orientation_error",
+        ("mean", "rms", "max"),
+        "Angle between the orientations that the arm and the instrument say, in mm at 1 m: mrad.",
+        "orientation error",
+        "orient.",
+    ),
 )
 """In the order in which they are shown."""
 

@@ -59,6 +59,13 @@ class Readings(Shown):
     """(N, n) +1 where the encoder's angle had been rising, -1 where it had been falling, 0 where nobody knows."""
     p_approach: F64 | None = None
     """(N, n) the same of the second pose; length rows only."""
+    rotation_rad: F64 | None = None
+    """(N, 3) rotation vectors, from a target's frame to that of the instrument that saw it; orientations only."""
+    rotation_u_rad: F64 | None = None
+    """(N,) their standard uncertainty about each axis, where it is stated."""
+    payload: F64 | None = None
+    """(N, 4) what was carried beside the arm's own masses: mass, kg, and x, y, z of its centre in the probe's frame,
+    mm."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, Labels.of(value) if name == "placement" else value)
@@ -77,7 +84,8 @@ class Readings(Shown):
     def said(self) -> list[dict[str, F64 | None]]:
         """Of each pose of a row: the arguments of `Arm.conditions`."""
         approaches = [self.approach] if self.p_rad is None else [self.approach, self.p_approach]
-        return [{"temperature_c": self.temperature_c, "approach": approach} for approach in approaches]
+        alike = {"temperature_c": self.temperature_c, "payload": self.payload}
+        return [{**alike, "approach": approach} for approach in approaches]
 
     def conditions(self) -> Iterator[tuple[Condition, str, F64]]:
         """Those that are said, each with the name of its columns."""
@@ -112,6 +120,9 @@ class Readings(Shown):
             temperature_c=of(self.temperature_c),
             approach=of(self.approach),
             p_approach=of(self.p_approach),
+            rotation_rad=of(self.rotation_rad),
+            rotation_u_rad=of(self.rotation_u_rad),
+            payload=of(self.payload),
         )
 
     @property

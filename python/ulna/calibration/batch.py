@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import re
 import warnings
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
@@ -14,12 +17,13 @@ from typing import Any, Literal
 
 from ulna.calibration.calibrate import calibrate
 from ulna.calibration.provenance import provenance
-from ulna.calibration.result import FILES, Result
-from ulna.formats.output import refuse_inputs
+from ulna.calibration.result import FILES, RESIDUALS, Result
+from ulna.formats.output import refuse_inputs, write_file
 from ulna.formats.toml import read_json
 from ulna.ground.arrays import Progress
 from ulna.ground.digits import figure_mm
-from ulna.ground.errors import InputWarning, UlnaInputError
+from ulna.ground.errors import InputWarning, UlnaInputError, cannot_be_read
+from ulna.ground.faults import fault
 from ulna.ground.shown import About, Shown, Table
 from ulna.study.study import Study
 from ulna.work.pieces import Threads, Workers
@@ -27,6 +31,7 @@ from ulna.work.pieces import Threads, Workers
 Status = Literal["converged", "not-converged", "refused"]
 
 FORMAT = "ulna-batch/1"
+LIST = "batch.json"
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,11 @@ def studies_in(folder: Path, only: str = "*") -> dict[str, Path]:
 
 def _is_study(path: Path) -> bool:
     """By what its format says; whether it can be read is another question."""
-    return re.search(rb"^\s*format\s*=\s*[\"']ulna-study/", path.read_bytes(), re.MULTILINE) is not None
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return True  # the message comes with its turn
+    return re.search(rb"^\s*format\s*=\s*[\"']ulna-study/", content, re.MULTILINE) is not None
 
 
 def batch(
@@ -121,37 +130,78 @@ def batch(
     be done at all; KeyboardInterrupt.
     """
     folder, out = Path(folder), Path(out)
-    done: dict[str, Calibrated] = {}
-    loaded: dict[str, Study] = {}
     named = studies_in(folder, only)
-    for name, path in named.items():
-        try:
-            study = _load(path)
-            refuse_inputs((out / name / file for file in FILES), (file.path for file in study.files))
-            before = _done_before(study, out / name, force)
-        except UlnaInputError as error:
-            done[name] = _refused(name, str(error))
-            continue
-        if before is None:
-            loaded[name] = study
-        else:
-            done[name] = _calibrated(name, before, done_before=True)
+    listed = out / LIST
+    _check_list(listed, force)
+    done: dict[str, Calibrated] = {}
     told = progress if progress is not None else lambda *_: None
-    told("studies", len(done), len(named))
-    names = list(loaded)
-    for number, answer in (workers or Threads()).each(_calibrate, [loaded[name] for name in names]):
+    told("studies", 0, len(named))
+    names = list(named)
+    for number, answer in (workers or Threads()).each(_calibrate, _Turns(named, out, force)):
         name = names[number]
-        if isinstance(answer, str):
-            done[name] = _refused(name, answer)
-        else:
-            answer.save(out / name, force=force)
-            done[name] = _calibrated(name, answer, done_before=False)
+        done[name] = _kept(name, answer, out / name, force)
         told("studies", len(done), len(named))
     found = Batch([done[name] for name in named])
     text = json.dumps(found.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-    out.mkdir(parents=True, exist_ok=True)
-    (out / "batch.json").write_text(text + "\n", encoding="utf-8")
+    write_file(listed, text + "\n", force=True)
     return found
+
+
+def _check_list(listed: Path, force: bool) -> None:
+    """Only an earlier list of a batch is replaced, asked before the work. Raises UlnaInputError."""
+    if force and not listed.is_symlink():
+        return
+    if not os.path.lexists(listed):
+        return
+    ours = False
+    if listed.is_file() and not listed.is_symlink():
+        with suppress(UlnaInputError):
+            ours = read_json(listed, "a list of a batch")[0].get("format") == FORMAT
+    if not ours:
+        raise UlnaInputError(
+            f"{listed}: is no list of an earlier batch, and is not overwritten. Name another folder with -o"
+            + (", or remove the link." if listed.is_symlink() else ", or give --force.")
+        )
+
+
+@dataclass(frozen=True)
+class _Done:
+    """A result that was there already."""
+
+    result: Result
+
+
+class _Turns(Sequence[Any]):
+    """Each study when its turn comes, so that few are in memory: a study, what was done before, or a message."""
+
+    def __init__(self, named: dict[str, Path], out: Path, force: bool) -> None:
+        self._named, self._out, self._force = list(named.items()), out, force
+
+    def __len__(self) -> int:
+        return len(self._named)
+
+    def __getitem__(self, number: Any) -> Any:
+        name, path = self._named[number]
+        folder = self._out / name
+        return _stopping_none(lambda: self._turn(path, folder))
+
+    def _turn(self, path: Path, folder: Path) -> Study | _Done:
+        study = _load(path)
+        refuse_inputs((folder / file for file in (*FILES, LIST)), (file.path for file in study.files))
+        before = _done_before(study, folder, self._force)
+        return study if before is None else _Done(before)
+
+
+def _stopping_none(work: Callable[[], Any]) -> Any:
+    """What comes of one study; a message where something is wrong with it, whatever that is."""
+    try:
+        return work()
+    except UlnaInputError as error:
+        return str(error)
+    except OSError as error:
+        return cannot_be_read(error)
+    except Exception as error:
+        return fault(error)
 
 
 def _load(path: Path) -> Study:
@@ -161,14 +211,30 @@ def _load(path: Path) -> Study:
         return Study.load(path)
 
 
-def _calibrate(study: Study) -> Result | str:
+def _calibrate(study: Study | _Done | str) -> Result | _Done | str:
     """The result, or what is wrong with the study: a message is data here, so that it passes between processes."""
+    if not isinstance(study, Study):
+        return study
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)
-        try:
-            return calibrate(study)
-        except UlnaInputError as error:
-            return str(error)
+        found: Result | str = _stopping_none(lambda: calibrate(study))
+        return found
+
+
+def _kept(name: str, answer: Result | _Done | str, folder: Path, force: bool) -> Calibrated:
+    """What became of a study; its result is written."""
+    if isinstance(answer, _Done):
+        return _calibrated(name, answer.result, done_before=True)
+    if isinstance(answer, str):
+        return _refused(name, answer)
+    result = answer
+
+    def save() -> Calibrated:
+        result.save(folder, force=force)
+        return _calibrated(name, result, done_before=False)
+
+    saved = _stopping_none(save)
+    return _refused(name, saved) if isinstance(saved, str) else saved
 
 
 def _done_before(study: Study, folder: Path, force: bool) -> Result | None:
@@ -177,8 +243,16 @@ def _done_before(study: Study, folder: Path, force: bool) -> Result | None:
         return None
     if force:
         return None
-    document, _ = read_json(folder / "result.json", "a result.json")
-    made = document.get("provenance", {})
+    lacking = next((name for name in ("result.json", "arm.toml") if not (folder / name).is_file()), None)
+    if lacking is None and not any((folder / name).is_file() for name in ("residuals.csv", RESIDUALS)):
+        lacking = "residuals.csv"
+    if lacking is not None:
+        raise UlnaInputError(
+            f"{folder / lacking}: is missing, which belongs to the result that is there; it is not taken as done. Give "
+            "--force to make it anew, or name another folder."
+        )
+    before = Result.load(folder)
+    made = before.provenance
     asked = json.loads(json.dumps(provenance(study, datetime.now(UTC))))
     same = all(made.get(key) == asked[key] for key in ("version", "options", "noise"))
     same &= [file.get("sha256") for file in made.get("files", [])] == [file["sha256"] for file in asked["files"]]
@@ -187,7 +261,7 @@ def _done_before(study: Study, folder: Path, force: bool) -> Result | None:
             f"{folder}: holds a result of other files, options or another version, and is not overwritten. Name "
             "another folder, or give --force."
         )
-    return Result.load(folder)
+    return before
 
 
 def _refused(name: str, message: str) -> Calibrated:

@@ -20,10 +20,11 @@ import ulna._core as _core
 from ulna.arm.arm import Arm
 from ulna.arm.covariance import root_of
 from ulna.artefacts.artefact import features_mm
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.calibration.touched import touched
 from ulna.geometry.rigid import fitted_motion
-from ulna.ground.arrays import F64, I64
+from ulna.ground.arrays import F64, I64, Bool
 from ulna.study.assembly import Assembled, conditions_of
 from ulna.study.study import Study
 
@@ -96,10 +97,12 @@ Region = tuple[F64, F64]
 def _of_standings(study: Study, arm: Arm, assembled: Assembled, fitted: _core.Fitted) -> list[Region] | None:
     """Standings, of many those near each other together; None of fewer than two."""
     rows, residuals, standing = _core.rows_of_fit(assembled.problem, assembled.hold, fitted)
+    at_mm, of_places = _where(study, arm)
+    told = of_places[standing]
+    rows, residuals, standing = rows[told], residuals[told], standing[told]
     if not len(standing) or standing[0] == standing[-1]:
         return None
     rows = rows @ root_of(fitted.covariance / fitted.variance)
-    at_mm = _where(study, arm)
     region = np.arange(len(at_mm))
     if len(at_mm) > MOST_PLACES:
         region = _regions(at_mm, MOST_PLACES)
@@ -107,35 +110,40 @@ def _of_standings(study: Study, arm: Arm, assembled: Assembled, fitted: _core.Fi
     return [(rows[of_row == number], residuals[of_row == number]) for number in np.unique(of_row)]
 
 
-def _where(study: Study, arm: Arm) -> F64:
-    """(S, 3) mean tip of each standing, as the core counts them."""
-    found = []
+def _where(study: Study, arm: Arm) -> tuple[F64, Bool]:
+    """(S, 3) mean tip of each standing, as the core counts them, and whether its readings tell places."""
+    found, tell = [], []
     for group in study.readings:
         tips = arm.core.tip(
             np.ascontiguousarray(group.q_rad), np.ascontiguousarray(group.probe), **conditions_of(study, arm, group)[0]
         )
         if group.artefact.frame == "arm" or group.p_rad is not None:
             found.append(tips)
+            tell.append(np.full(len(tips), not kind_of(group.artefact).turned))
             continue
         code, labels = group.labels.as_they_appear()
         counts = np.bincount(code, minlength=len(labels))[:, None]
         sums = np.stack([np.bincount(code, tips[:, k], minlength=len(labels)) for k in range(3)], axis=1)
         found.append(sums / counts)
-    return np.concatenate(found)
+        tell.append(np.full(len(labels), not kind_of(group.artefact).turned))
+    return np.concatenate(found), np.concatenate(tell)
 
 
 def _of_one_standing(study: Study, arm: Arm, fitted: _core.Fitted) -> list[Region] | None:
     """Parts of the volume, of a single standing with very many features: its motion is fitted to all of them. None of
     few touches, or of what is no set of features."""
-    group = study.readings[0]
+    places = [number for number, each in enumerate(study.readings) if not kind_of(each.artefact).turned]
+    if len(places) != 1:
+        return None
+    group = study.readings[places[0]]
     features = features_mm(group.artefact)
-    if len(study.readings) > 1 or len(features) < LEAST_TOUCHES or len(group) < LEAST_TOUCHES:
+    if len(features) < LEAST_TOUCHES or len(group) < LEAST_TOUCHES:
         return None
     of_arm = [column for column in fitted.covariance_columns.tolist() if column < len(arm.parameter_names)]
     found = touched(arm, study, group, None)
     tips = found.tips_mm
     stood, moves = fitted_motion(tips, features[group.feature])
-    weight = fitted.weights(0)[:, None]
+    weight = fitted.weights(places[0])[:, None]
     columns = (
         np.concatenate([found.by_parameter[:, :, of_arm], moves.reshape(len(group), 3, -1)], axis=2)
         * weight[:, :, None]

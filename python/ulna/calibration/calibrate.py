@@ -10,6 +10,7 @@ from ulna.calibration.choosing.choose import choose, start_of
 from ulna.calibration.estimators import search_box
 from ulna.calibration.extras import judge_extras
 from ulna.calibration.fitted import FittedStudy
+from ulna.calibration.levers import with_levers
 from ulna.calibration.result import Result
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import Progress
@@ -33,6 +34,7 @@ def calibrate(study: StudyLike, progress: Progress | None = None, **overrides: A
     began = time.perf_counter()
     if asked.fit.judge:
         need(f"{asked.label}: key 'fit.judge'", "sklearn")
+    asked = with_levers(asked, progress)
     choice = choose(asked, progress) if asked.fit.auto else None
     study = asked if choice is None else choice.study
     assembled = assemble(study)

@@ -24,6 +24,7 @@ from ulna.calibration.figures import over_groups, overall_figures
 from ulna.calibration.fitted import FittedStudy
 from ulna.calibration.folds import Fold, folds
 from ulna.calibration.held_out import judged
+from ulna.calibration.levers import with_levers
 from ulna.calibration.likely import Cause, likely_causes, together
 from ulna.calibration.placements import FigureEntry, Figures
 from ulna.calibration.provenance import provenance
@@ -97,7 +98,7 @@ def cross_validate(
     `by`: each placement of each artefact; each artefact; or a number of random folds (2 or more), dealt by
     `study.fit.seed`. `overrides` replace fields of `study.fit`. Raises UlnaInputError, KeyboardInterrupt.
     """
-    study = with_options(as_study(study), **overrides)
+    study = with_levers(with_options(as_study(study), **overrides))
     how, left_out = folds(study, by)
     groups, held, likely = [], [], []
     for number, fold in enumerate(left_out):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.attitudes import attitudes
 from ulna.artefacts.judging import Errors, Tips
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.quantities import NAMES, QUANTITIES, Quantity
@@ -65,8 +66,10 @@ def _group(arm: Arm, study: Study, readings: Readings) -> GroupErrors:
     if readings.p_rad is not None:
         second_mm = arm.core.tip(np.ascontiguousarray(readings.p_rad), probe, **conditions[1])
     code, labels = readings.labels.as_they_appear()
-    tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code)
-    return GroupErrors(readings, labels, code, kind_of(readings.artefact).errors(readings, tips))
+    kind = kind_of(readings.artefact)
+    turned = attitudes(arm.core, np.ascontiguousarray(readings.q_rad), probe, conditions[0]) if kind.turned else None
+    tips = Tips(first_mm, second_mm, balls_mm(study, arm, readings)[readings.probe], code, turned)
+    return GroupErrors(readings, labels, code, kind.errors(readings, tips))
 
 
 def over_all(groups: Sequence[GroupErrors]) -> Figures:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 import ulna._core as _core
+from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
 from ulna.calibration.between_places import BetweenPlaces
 from ulna.calibration.summary import FEW_PLACES, ReadingScatter
@@ -25,14 +26,18 @@ def reading_scatter(core: _core.Fitted, study: Study, between: BetweenPlaces | N
     variance = core.variance
     if not math.isfinite(variance) or variance < 0.0:
         return None
-    groups = list(enumerate(study.readings))
+    # what an instrument of orientations scatters by is no touch's
+    groups = [(number, group) for number, group in enumerate(study.readings) if not kind_of(group.artefact).turned]
     freedom = _freedom(core, between)
     shown = ReadingScatter(
         degrees_of_freedom=None if math.isinf(freedom) else freedom,
         places=None if between is None else between.places,
         place_factor=None if between is None else between.factor,
     )
+    if not groups:
+        return shown
     if study.noise is None:
+        variance *= _part(core, study, [number for number, _ in groups])
         ends = sum(len(group) * _ends(group) for _, group in groups) / sum(len(group) for _, group in groups)
         return replace(shown, touch_mm=math.sqrt(variance / ends))
     if not core.estimated:
@@ -49,6 +54,15 @@ def _freedom(core: _core.Fitted, between: BetweenPlaces | None) -> float:
     if between is None or between.places > FEW_PLACES:
         return core.degrees_of_freedom
     return min(core.degrees_of_freedom, between.places)
+
+
+def _part(core: _core.Fitted, study: Study, places: list[int]) -> float:
+    """The mean square of the residuals of places over that of all."""
+    if len(places) == len(study.readings):
+        return 1.0
+    squares = [core.residuals(number).ravel() ** 2 for number in range(len(study.readings))]
+    mean = float(np.mean(np.concatenate(squares)))
+    return float(np.mean(np.concatenate([squares[number] for number in places]))) / mean if mean else 1.0
 
 
 def _ends(group: Readings) -> int:

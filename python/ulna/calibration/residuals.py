@@ -39,6 +39,10 @@ class ResidualEntry(ReadingEntry):
     """Of a length row: measured minus stated."""
     distance_mm: float | None = None
     """Of a touch of a surface: from it, less the ball's radius."""
+    turn_x_mm: float | None = None
+    turn_y_mm: float | None = None
+    turn_z_mm: float | None = None
+    """Of an orientation: the turn about an axis of the base frame, times the lever by which it weighs."""
     norm_mm: float
     """The magnitude."""
     weight: float

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from ulna.arm.joint_file import JointTable
+from ulna.arm.payload import PayloadTable
 from ulna.arm.tables import CartesianTip
 from ulna.calibration.choosing.tried import ChosenModel
 from ulna.calibration.coverage import Coverage
@@ -38,6 +39,7 @@ class ResultArm(Open):
     name: str
     full_last_link: bool = False
     gravity: list[float] | None = None
+    payload: dict[str, PayloadTable] | None = None
     joint: Annotated[list[JointTable], Field(min_length=2)]
     probe: Annotated[dict[str, ResultProbe], Field(min_length=1)]
 

@@ -90,13 +90,15 @@ def _of_angles(study: Study, change: Callable[[F64], F64]) -> Study:
 
 def _units(study: Study) -> Iterator[Suspicion]:
     for was, should, factor in (("radians", "degrees", np.pi / 180.0), ("degrees", "radians", 180.0 / np.pi)):
-        changed = _of_angles(study, partial(np.multiply, factor))
+        changed = _of_angles(study, partial(np.multiply, study.arm.each(factor, 1.0)))
         yield Suspicion(
             f"if the encoder angles are in {should}, not in {was}", f"State {should} as their unit.", changed
         )
 
 
 def _swapped(study: Study) -> Iterator[Suspicion]:
+    if study.arm.slides.any():
+        return
     for one, other in combinations(range(study.arm.n), 2):
         order = np.arange(study.arm.n)
         order[[one, other]] = other, one
@@ -120,7 +122,7 @@ def _counted(study: Study) -> Iterator[Suspicion]:
 
 def _coupled(study: Study) -> Iterator[Suspicion]:
     joints = study.arm.joints
-    if any(effect is EFFECTS["compliance"] for effect in study.arm.effects):
+    if study.arm.slides.any() or any(effect is EFFECTS["compliance"] for effect in study.arm.effects):
         return
     for joint, other in permutations(range(study.arm.n), 2):
         for ratio in (1.0, -1.0):

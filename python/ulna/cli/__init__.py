@@ -8,7 +8,7 @@ import typer
 
 from ulna.cli.commands import Commands
 from ulna.cli.completing import get_ready
-from ulna.cli.interrupting import INTERRUPTED, leave_interrupted, say_interrupted
+from ulna.cli.interrupting import ENDING, leave_interrupted, say_interrupted
 
 app = typer.Typer(
     name="ulna",
@@ -37,7 +37,8 @@ def ulna(
 ) -> None:
     """Calibration of articulated measuring arms: from encoder readings to a calibrated arm.
 
-    Exit code: 0 done and good; 1 done, and the answer is no (did not converge); 2 bad input or usage; 130 interrupted.
+    Exit code: 0 done and good; 1 done, and the answer is no (did not converge); 2 bad input or usage; 3 a fault of
+    Ulna's; 130 interrupted; 143 told to end.
 
     Example: [bold]ulna calibrate study.toml -o out[/bold]
     """
@@ -52,6 +53,6 @@ def main() -> None:
         say_interrupted()
         leave_interrupted()
     except SystemExit as end:
-        if end.code == INTERRUPTED:
+        if end.code in ENDING.values():
             leave_interrupted()
         raise

@@ -73,6 +73,9 @@ def ipa_ur10(
     standings: Annotated[
         int, typer.Option(min=1, help="Take the tracker's place as new in each of so many parts of the file.")
     ] = 1,
+    orientations: Annotated[
+        bool, typer.Option("--orientations", help="Read how the target was turned as well as where it was.")
+    ] = False,
     parquet: AsParquet = False,
     force: Force = False,
 ) -> None:
@@ -82,8 +85,29 @@ def ipa_ur10(
     """
     from ulna.exchange.importers.ipa import import_ipa_ur10
 
-    fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, force)
+    fitted, held_out = import_ipa_ur10(file, out, fit, every, spread, standings, parquet, orientations, force)
     _say(f"{out}: {fitted} readings to fit (study.toml), {held_out} held out{' (held-out.toml)' * bool(held_out)}.")
+    _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
+
+
+@app.command("serial-robots", cls=Command)
+@guard
+def serial_robots(
+    file: Annotated[Path, typer.Argument(help="The table to fit: targets, differences and joint angles.")],
+    out: Out,
+    robot: Annotated[str, typer.Option(metavar="ur5|wam", help="Which robot.")],
+    held_out: Annotated[Path | None, typer.Option(help="Another table of it, to check the fit.")] = None,
+    parquet: AsParquet = False,
+    force: Force = False,
+) -> None:
+    """A UR5 or a Barrett WAM whose targets a laser tracker measured; another table becomes held-out.toml.
+
+    Example: ulna import serial-robots 3D_UR5_uncalibrated_grid_cleaned.csv -o ur5 --robot ur5
+    """
+    from ulna.exchange.importers.serial_robots import import_serial_robots
+
+    fitted, held = import_serial_robots(file, out, robot, held_out, parquet, force)
+    _say(f"{out}: {fitted} readings to fit (study.toml), {held} held out{' (held-out.toml)' * bool(held)}.")
     _say(f"Next: ulna calibrate {out / 'study.toml'} -o {out / 'result'}")
 
 

@@ -49,6 +49,10 @@ def measure(
         float | None,
         typer.Option("--temperature", metavar="C", help="Of all readings, °C, where they do not say it."),
     ] = None,
+    payload: Annotated[
+        str | None,
+        typer.Option("--payload", metavar="NAME", help="What was carried, where the readings do not say it."),
+    ] = None,
     covariance: Annotated[
         bool, typer.Option("--covariance", help="Also c_xx, c_xy, c_xz, c_yy, c_yz, c_zz: each point's covariance.")
     ] = False,
@@ -102,7 +106,8 @@ def measure(
     Columns q1 … qn; id and probe are kept where they are. With a result.json as ARM come the standard uncertainties
     u_x, u_y, u_z, from the calibration and, where its study stated it, the encoders' noise; they are left empty where
     a point depends on what the calibration could not determine, and stderr says why. An arm whose links grow with
-    temperature needs a column temperature, or --temperature; one whose joints have backlash the columns approach1, ….
+    temperature needs a column temperature, or --temperature; one whose joints have backlash the columns approach1, …;
+    one whose joints give way to loads of the calibration's study a column payload, or --payload.
     --json prints one object per
     point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole. From
     stdin (-) each row is measured and written as it comes.
@@ -135,6 +140,7 @@ def measure(
         keys = {**table, "columns": dict(stated.columns), "names": dict(stated.names)}
         layout = as_study.layout(keys | ({"header": stated.header} if no_header or header else {}))
         unused, angle, probe = as_study.unused, angle or as_study.angle, probe or as_study.probe
+        payload = payload or as_study.payload
         for remark in as_study.remarks:
             output.say(f"note: {remark}")
     source = coming_table(sys.stdin.buffer, WHAT, layout) if readings == STREAM else readings
@@ -146,6 +152,7 @@ def measure(
         units,
         layout=layout,
         temperature_c=temperature,
+        payload=payload,
         covariance=covariance,
         unused=unused,
     )

@@ -12,10 +12,16 @@ from collections.abc import Callable
 from typing import Any, TextIO, TypeVar
 
 import typer
+from typer.exceptions import TyperException
 
-from ulna.cli.interrupting import INTERRUPTED, prompt_interrupts, say_interrupted
+from ulna.cli.interrupting import ENDING, ended, prompt_interrupts, say_interrupted
 
 BAD_INPUT = 2
+FAULT = 3
+"""What ends in this code is not the user's."""
+TRACEBACK = "ULNA_TRACEBACK"
+"""Set in the environment, a fault shows where it came from."""
+
 
 Command = TypeVar("Command", bound=Callable[..., None])
 
@@ -25,7 +31,8 @@ def guard(command: Command) -> Command:
 
     @functools.wraps(command)
     def guarded(*args: Any, **kwargs: Any) -> None:
-        from ulna.ground.errors import InputWarning, UlnaInputError
+        from ulna.ground.errors import InputWarning, UlnaInputError, cannot_be_read
+        from ulna.ground.faults import fault
 
         try:
             with prompt_interrupts(), warnings.catch_warnings():
@@ -36,29 +43,27 @@ def guard(command: Command) -> Command:
         except UlnaInputError as error:
             _fail(str(error))
         except KeyboardInterrupt:
-            signal.signal(signal.SIGINT, signal.SIG_IGN)  # libraries may raise it twice; once is enough
+            for number in ENDING:  # libraries may raise it twice; once is enough
+                signal.signal(number, signal.SIG_IGN)
             say_interrupted()
-            raise typer.Exit(INTERRUPTED) from None
+            raise typer.Exit(ended()) from None
         except BrokenPipeError:
             # whoever read our output has seen enough; without this Python complains once more at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         except OSError as error:
-            # a disk that is full, a network folder that went away: what nobody can foresee
-            where = f"{error.filename}: " if error.filename else ""
-            _fail(f"{where}cannot be read or written ({error.strerror or error}). Check the disk and the permissions.")
-        except ValueError as error:
-            if not _is_core_error(error):
-                raise
-            _fail(str(error))
-        except ModuleNotFoundError as error:
-            from ulna.ground.extras import lacking
-
-            said = lacking(error.name or "")
-            if said is None:
-                raise
-            _fail(f"ulna {command.__name__.replace('_', '-')}: {said}")
+            _fail(cannot_be_read(error))
         except MemoryError:
             _fail("not enough memory for these readings. Use fewer rows at a time or a larger machine.")
+        except (typer.Exit, typer.Abort, TyperException):  # wrong options: the command line's own words
+            raise
+        except Exception as error:
+            said = _said(error, command)
+            if said is not None:
+                _fail(said)
+            if os.environ.get(TRACEBACK):
+                raise
+            print(f"error: {fault(error)} {TRACEBACK}=1 shows how it came about.", file=sys.stderr)
+            raise typer.Exit(FAULT) from None
 
     # typer would keep the line breaks of the source; paragraphs are all that is meant
     paragraphs = (inspect.getdoc(command) or "").split("\n\n")
@@ -66,14 +71,24 @@ def guard(command: Command) -> Command:
     return guarded  # type: ignore[return-value]  # same signature, by functools.wraps
 
 
-def _fail(message: str) -> None:
-    print(f"error: {message}", file=sys.stderr)
-    raise typer.Exit(BAD_INPUT) from None
-
-
-def _is_core_error(error: ValueError) -> bool:
+def _said(error: Exception, command: Command) -> str | None:
+    """What an error of others means to the user; None of a fault of ours."""
     core = sys.modules.get("ulna._core")
-    return core is not None and isinstance(error, core.UlnaError)
+    if core is not None and isinstance(error, core.UlnaError):
+        return str(error)
+    if isinstance(error, ModuleNotFoundError):
+        from ulna.ground.extras import lacking
+
+        said = lacking(error.name or "")
+        return None if said is None else f"ulna {command.__name__.replace('_', '-')}: {said}"
+    return None
+
+
+def _fail(message: str) -> None:
+    from ulna.ground.errors import for_people
+
+    print(f"error: {for_people(message)}", file=sys.stderr)
+    raise typer.Exit(BAD_INPUT) from None
 
 
 def _show_warning(
@@ -84,4 +99,6 @@ def _show_warning(
     file: TextIO | None = None,
     line: str | None = None,
 ) -> None:
-    print(f"warning: {message}", file=sys.stderr)
+    from ulna.ground.errors import for_people
+
+    print(f"warning: {for_people(str(message))}", file=sys.stderr)

@@ -84,6 +84,7 @@ def show(
         if value is not None:
             one_of(option, value, known)
     found = read_drawing(arm, Asked(convention, length_unit, angle_unit, tip, tip_link, base_link))
+    found.arm.check_turns(arm, "pages with sliders")
     q_rad = start_pose(found.arm) if pose is None else pose_of(pose, found.arm)
     if out is not None:
         by_ending(out, {".html": "html", ".htm": "html"}, [], folder=False)

@@ -10,6 +10,7 @@ import polars as pl
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
 from ulna.formats.spelling import PLAIN, Spelling, sexagesimal, thousands_of
+from ulna.ground.errors import UlnaInputError
 
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
@@ -105,6 +106,46 @@ def number_of(cell: str, decimal: str = ".") -> float | None:
 def is_decimal_comma(cell: str) -> bool:
     """Whether a text would be a number if its comma were a point."""
     return re.fullmatch(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*", cell) is not None
+
+
+def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
+    """A typed column of labels as String. Raises UlnaInputError for a type that holds none, or dates beyond dates."""
+    reason = "" if not column.dtype.is_temporal() or _are_dates(column) else ", beyond all dates"
+    if not reason:
+        try:
+            return names_of(column)
+        except pl.exceptions.PolarsError as error:
+            reason = f" ({str(error).splitlines()[0][:80]})" if str(error) else ""
+    raise UlnaInputError(
+        f"{header.path}: {header.named(name)} is of type {column.dtype}{reason}; expected texts or whole numbers as "
+        "labels. Write it as texts."
+    )
+
+
+_DAYS = 2_932_896
+"""From 1970 to the year 9999."""
+_PER_DAY = {"ms": 86_400_000, "us": 86_400_000_000, "ns": 86_400_000_000_000}
+
+
+def _are_dates(column: pl.Series) -> bool:
+    """Whether times of a column are such that people have a calendar for: Polars ends the process at others."""
+    if column.dtype == pl.Time:
+        return True
+    if column.dtype == pl.Date:
+        per_day = 1
+    elif isinstance(column.dtype, pl.Datetime):
+        per_day = _PER_DAY[column.dtype.time_unit]
+    else:
+        return False
+    largest = column.to_physical().cast(pl.Float64).abs().max()
+    return largest is None or bool(float(str(largest)) <= _DAYS * per_day)
+
+
+def first_of(column: pl.Series) -> object:
+    """Its first value, to be shown; of times the number that stands for it where no calendar has it."""
+    if not len(column):
+        return None
+    return column.to_physical()[0] if column.dtype.is_temporal() else column[0]
 
 
 def names_of(column: pl.Series) -> pl.Series:

@@ -1,8 +1,8 @@
 """Columns whose names are Ulna's but for capitals and a unit in brackets: `Q1`, `q1 [rad]`, `x (mm)`.
 
-They are taken for what they say, and told, where the table could not be used otherwise: encoder angles, lengths with
-their unit, and tables without angles (points). Any other column of such a name stays one that nobody uses, or a slip
-that is asked about.
+They are taken for what they say, and told, where the table could not be used otherwise: encoder angles, lengths and
+orientations with their unit, and tables without angles (points). Any other column of such a name stays one that nobody
+uses, or a slip that is asked about.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from ulna.formats.header import Header
-from ulna.formats.own_units import LENGTHS
+from ulna.formats.own_units import ANGLES, LENGTHS
 
 _UNIT = re.compile(r"(.+?)\s*[\[(]\s*([^\])]+?)\s*[\])]")
 
@@ -41,8 +41,8 @@ def near_names(
 
 
 def _goes_along(ours: str, match: re.Match[str] | None, column: str, header: Header, names: Mapping[str, str]) -> bool:
-    """Whether a column beside the angles is meant: a second pose as the first one is written, a length with a unit."""
-    if match and LENGTHS.names(match[2]) and not re.fullmatch(r"[qp]\d+", ours):
+    """Whether a column beside the angles is meant: a second pose as the first one is written, a number with a unit."""
+    if match and (LENGTHS.names(match[2]) or ANGLES.names(match[2])) and not re.fullmatch(r"[qp]\d+", ours):
         return True
     if re.fullmatch(r"p\d+", ours) is None or not names:
         return False

@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from ulna.formats.arriving import arrive
+from ulna.formats.moving import flush, place_new, umask
 from ulna.ground.errors import UlnaInputError
 
 #: staging places of this process: whoever must end it at once takes them away first
@@ -19,6 +21,9 @@ UNDER_WAY: set[Path] = set()
 
 #: no space, too large a file, quota: only writing fails so
 _NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
+
+#: results of this process that are in their places
+FINISHED: list[Path] = []
 
 #: held while results move from staging to their places
 MOVING = threading.Lock()
@@ -72,11 +77,12 @@ def output_folder(
     """
     folder = Path(folder)
     check_output(folder, [*names, *instead_of], force)
-    staging = _staging(folder, folder.name)
+    place = folder.resolve() if folder.is_symlink() else folder
+    staging = None
     try:
         try:
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            staging.mkdir(mode=0o700)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            staging = _staged_folder(place)
         except OSError as error:
             raise _unwritable(folder, error) from None
         try:
@@ -87,36 +93,36 @@ def output_folder(
         if absent:
             raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
         try:
+            for name in names:
+                flush(staging / name)
             with MOVING:
-                _move_all(staging, folder, names, instead_of)
+                arrive(staging, place, names, instead_of, force)
+                FINISHED.append(folder)
+        except FileExistsError as error:
+            raise _appeared(Path(error.filename or folder)) from None
         except OSError as error:
             raise _unwritable(folder, error) from None
     finally:
-        shutil.rmtree(staging, ignore_errors=True)
-        UNDER_WAY.discard(staging)
+        if staging is not None:
+            shutil.rmtree(staging, ignore_errors=True)
+            UNDER_WAY.discard(staging)
 
 
-def _move_all(staging: Path, folder: Path, names: Sequence[str], instead_of: Sequence[str]) -> None:
-    if not folder.exists():
-        staging.chmod(0o777 & ~_umask())  # a temporary folder is private; a result is as public as its maker's others
-        staging.replace(folder)
-        return
-    kept = staging / ".before"
-    kept.mkdir()
-    moved: list[str] = []
+def _staged_folder(place: Path) -> Path:
+    """Beside the folder; within it where that is another disk, or nobody may write beside it. Raises OSError."""
+    staging = _staging(place, place.name)
     try:
-        for name in [*names, *instead_of]:
-            if (folder / name).exists():
-                (folder / name).replace(kept / name)
-            moved.append(name)
-            if name in names:
-                (staging / name).replace(folder / name)
-    except BaseException:
-        for name in moved:  # back to what was there before
-            (folder / name).unlink(missing_ok=True)
-            if (kept / name).exists():
-                (kept / name).replace(folder / name)
-        raise
+        if place.is_dir() and os.path.ismount(place):
+            raise OSError(errno.EXDEV, os.strerror(errno.EXDEV))
+        staging.mkdir(mode=0o700)
+        return staging
+    except OSError as error:
+        UNDER_WAY.discard(staging)
+        if not place.is_dir() or _no_room(error):
+            raise
+    staging = _staging(place / "within", place.name)
+    staging.mkdir(mode=0o700)
+    return staging
 
 
 def write_file(path: str | Path, content: str | bytes, force: bool = False) -> None:
@@ -147,13 +153,30 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
             if not _no_room(error):
                 raise  # the readings may be what failed
             raise _unwritable(path, error) from None
-        with MOVING:
-            staged.chmod(0o666 & ~_umask())
-            staged.replace(path)
+        try:
+            with MOVING:
+                staged.chmod(0o666 & ~umask())
+                flush(staged)
+                if force:
+                    staged.replace(path)
+                else:
+                    place_new(staged, path)
+                FINISHED.append(path)
+        except FileExistsError:
+            raise _appeared(path) from None
+        except OSError as error:
+            raise _unwritable(path, error) from None
     finally:
         with suppress(OSError):
             staged.unlink()
         UNDER_WAY.discard(staged)
+
+
+def _appeared(path: Path) -> UlnaInputError:
+    return UlnaInputError(
+        f"{path}: exists already and is not overwritten: another program wrote it meanwhile. Name another place with "
+        "-o, or give --force."
+    )
 
 
 def _staging(target: Path, stem: str, suffix: str = "") -> Path:
@@ -167,12 +190,6 @@ def _staging(target: Path, stem: str, suffix: str = "") -> Path:
 def _no_room(error: OSError) -> bool:
     number = re.search(r"\(os error (\d+)\)", str(error))  # as Polars says it, without errno
     return (int(number[1]) if number else error.errno) in _NO_ROOM
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _unwritable(path: Path, error: OSError) -> UlnaInputError:

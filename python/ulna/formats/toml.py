@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -12,6 +13,8 @@ from typing import Any
 from ulna.ground.errors import UlnaInputError, nearest
 
 #: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
+MOST = 1e15
+"""Of any number in a hand-written file."""
 MOST_BYTES = 16 << 20
 
 
@@ -58,11 +61,28 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
     if not text.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     try:
-        return tomllib.loads(text), sha256(content)
+        document = tomllib.loads(text)
+        _check_sizes(document, "", path)
+        return document, sha256(content)
     except tomllib.TOMLDecodeError as error:
         raise UlnaInputError(f"{path}: not valid TOML: {error}. Expected {what}; correct that place.") from None
     except (RecursionError, ValueError) as error:
         raise UlnaInputError(_beyond(path, error, what)) from None
+
+
+def _check_sizes(value: Any, key: str, path: Path) -> None:
+    """No number is larger than any quantity is: squares of it would be none. Raises UlnaInputError naming the key."""
+    if isinstance(value, dict):
+        for name, each in value.items():
+            _check_sizes(each, f"{key}.{name}" if key else name, path)
+    elif isinstance(value, list):
+        for number, each in enumerate(value, start=1):
+            _check_sizes(each, f"{key}.{number}", path)
+    elif isinstance(value, float) and MOST < abs(value) < math.inf:
+        raise UlnaInputError(
+            f"{path}: key '{key[:80]}': got {value:g}, more than any quantity is; expected a number up to {MOST:g} in "
+            "size. Correct it."
+        )
 
 
 def read_json(path: Path, what: str) -> tuple[dict[str, Any], str]:

@@ -36,3 +36,26 @@ def wrong_type(given: object, expected: str) -> TypeError:
     article = "an" if kind[:1].lower() in "aeiou" or kind == "ndarray" else "a"
     shown = "None" if given is None else f"{article} {kind}"
     return TypeError(f"got {shown}, expected {expected}.")
+
+
+def cannot_be_read(error: OSError) -> str:
+    """A disk that is full, a network folder that went away, permissions: what nobody can foresee, as a message."""
+    where = f"{error.filename}: " if error.filename else ""
+    return f"{where}cannot be read or written ({error.strerror or error}). Check the disk and the permissions."
+
+
+LONGEST = 1200
+"""Characters of a line of a message: what a person reads."""
+
+
+def for_people(message: str) -> str:
+    """A message as a terminal may have it: what files put into it moves no cursor and fills no screen."""
+    return "\n".join(map(_line, message.split("\n")))
+
+
+def _line(line: str) -> str:
+    if len(line) > LONGEST:
+        line = f"{line[: LONGEST - 300]} … {line[-250:]}"
+    return "".join(
+        each if each.isprintable() or each == "\t" else each.encode("unicode_escape").decode() for each in line
+    )

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ulna.arm.arm import Arm
 from ulna.arm.conditions import Conditions, some_of
+from ulna.arm.data import Loads
 from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.formats.layout import Layout
@@ -34,6 +35,7 @@ def measure_array(
     encoder_u_rad: F64 | None,
     temperature_c: ArrayLike | None,
     approach: ArrayLike | None,
+    payload: Loads = None,
 ) -> Measured:
     """Of an array (N, n), or (n,) of one pose. Raises UlnaInputError; ValueError for a wrong shape, TypeError for what
     is no array of numbers."""
@@ -56,7 +58,7 @@ def measure_array(
     q_rad = np.ascontiguousarray(q * rad_per(arm, angle))
     _check_turns(q_rad, arm, angle)
     index = _probe_indices(arm, probe, len(q))
-    conditions = arm.conditions(len(q), temperature_c, approach)
+    conditions = arm.conditions(len(q), temperature_c, approach, payload)
     return measured(arm, q_rad, index, conditions, noise.stated(encoder_u_rad))
 
 
@@ -68,12 +70,13 @@ def measure_frame(
     angle: str,
     encoder_u_rad: F64 | None,
     temperature_c: float | None,
+    payload: str | None = None,
 ) -> Measured:
-    """Of a table in memory with columns q1 … qn, perhaps id, probe, temperature. Raises UlnaInputError naming the row
-    and column; TypeError for what is no table."""
+    """Of a table in memory with columns q1 … qn, perhaps id, probe, temperature, payload. Raises UlnaInputError naming
+    row and column; TypeError for what is no table."""
     arm, noise = arm_and_noise(given)
     table = frame_table(frame, FRAME, layout)
-    job = MeasureJob(arm, table, probe, angle, "mm", layout=layout, temperature_c=temperature_c)
+    job = MeasureJob(arm, table, probe, angle, "mm", layout=layout, temperature_c=temperature_c, payload=payload)
     whole = job.whole()
     ids = whole.texts["id"].to_list() if "id" in whole.texts else None
     return measured(arm, whole.q_rad, whole.probe, whole.conditions, noise.stated(encoder_u_rad), ids)

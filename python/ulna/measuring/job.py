@@ -12,8 +12,9 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ulna.arm.conditions import TEMPERATURE, Condition, Conditions, some_of
+from ulna.arm.conditions import CONDITIONS, PAYLOAD, Condition, Conditions, some_of
 from ulna.arm.given import ArmLike, arm_and_noise
+from ulna.arm.payload import NOTHING_CARRIED
 from ulna.formats.header import Header, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.table import count_rows, named_header, read_header, stream
@@ -57,6 +58,7 @@ class MeasureJob:
         temperature_c: float | None = None,
         covariance: bool = False,
         unused: Collection[str] = (),
+        payload: str | None = None,
     ) -> None:
         """readings: a file, or a table that is open already; unused: its own names of columns of which nothing is said.
         Raises UlnaInputError for whatever is wrong before the first row."""
@@ -71,15 +73,17 @@ class MeasureJob:
             else read_header(readings, WHAT_READINGS, layout, known)
         )
         self._angle = angle
-        self._rad_per = rad_per(self.arm, angle)
+        self._rad_per = rad_per(self.arm, angle, self.header)
         self._q = [f"q{k + 1}" for k in range(self.arm.n)]
         remarks: list[str] = []
         asked = [column for column in map(self.header.find, unused) if column is not None]
         check_columns(self.header, self.arm.n, self.arm.name, remarks, asked=asked)
-        self._given = {"temperature_c": temperature_c}
+        self._given = {"temperature_c": temperature_c, "payload": payload}
         self._columns = self._needed(remarks)
-        self._numbers = [*self._q, *(column for columns in self._columns.values() for column in columns)]
-        self._texts = [name for name in ("id", "probe") if name in self.header.columns]
+        said = [(each.text, column) for each, columns in self._columns.items() for column in columns]
+        self._numbers = [*self._q, *(column for text, column in said if not text)]
+        self._texts: list[str] = [name for name in ("id", "probe") if name in self.header.columns]
+        self._names = [*self._texts, *(column for text, column in said if text)]
         self._probe = self._fixed_probe(probe, remarks)
         if "p1" in self.header.columns:
             remarks.append(f"{self.header.path}: two poses a row: only those of q1 … q{self.arm.n} are measured.")
@@ -155,7 +159,7 @@ class MeasureJob:
         return [] if self._uncertainty is None else self._uncertainty.notes
 
     def _pieces(self) -> Iterator[Piece]:
-        return stream(self.header, self._numbers, self._texts)
+        return stream(self.header, self._numbers, self._names)
 
     def _measured(self, piece: Piece) -> pl.DataFrame:
         q_rad = self._angles(piece)
@@ -173,14 +177,14 @@ class MeasureJob:
             if self._covariance:
                 values.append(c_mm2 / MM_PER[self.unit] ** 2)
         numbers = np.concatenate(values, axis=1)
-        columns = dict(piece.texts)
+        columns = {name: piece.texts[name] for name in self._texts}
         for k, name in enumerate(self.columns[len(self._texts) :]):
             columns[name] = pl.Series(name, np.ascontiguousarray(numbers[:, k]), nan_to_null=True)
         return pl.DataFrame(columns)
 
     def _angles(self, piece: Piece) -> F64:
         q = np.ascontiguousarray(piece.numbers[:, : self.arm.n])
-        q_rad = q if self._angle == "rad" else q * self._rad_per
+        q_rad = q if (self._rad_per == 1.0).all() else q * self._rad_per
         row = np.arange(piece.before + 1, piece.before + len(q) + 1)
         check_scale(q_rad, "q", self.arm, self._rad_per, self._angle, self.header, row, "Say the unit with --angle.")
         self._outside.add(q_rad, row)
@@ -191,6 +195,9 @@ class MeasureJob:
         said: dict[str, Any] = dict(self._given)
         row = np.arange(piece.before + 1, piece.before + 1 + len(piece))
         for condition, columns in self._columns.items():
+            if condition.text:
+                said[condition.said] = self._loads(piece, columns[0])
+                continue
             at = self._numbers.index(columns[0])
             values = np.ascontiguousarray(piece.numbers[:, at : at + len(columns)])
             check_values(values, columns, condition, self.header, row)
@@ -200,11 +207,15 @@ class MeasureJob:
     def _needed(self, remarks: list[str]) -> dict[Condition, list[str]]:
         """The columns that say what points depend on beside angles. Raises UlnaInputError where nothing says it."""
         found: dict[Condition, list[str]] = {}
-        if self._given["temperature_c"] is not None and TEMPERATURE not in self.arm.needs:
-            remarks.append(f"arm '{self.arm.name}': its links do not grow with temperature; it is not used.")
-        for condition, effect in self.arm.needs.items():
+        for condition in CONDITIONS:
+            if self._given.get(condition.said) is not None and condition not in self.arm.uses:
+                remarks.append(f"arm '{self.arm.name}': {condition.vain}; the {condition.name} is not used.")
+        self.arm.loads_of(self._given["payload"] if PAYLOAD in self.arm.uses else None)
+        for condition, effect in self.arm.uses.items():
             columns = columns_of(condition, condition.name, self.header.columns, self.arm.n)
             given = self._given.get(condition.said)
+            if not columns and given is None and condition not in self.arm.needs:
+                continue
             if not columns and given is None:
                 raise UlnaInputError(
                     f"{self.header.path}: no column '{condition.name}{'' if condition.common else 1}', but the "
@@ -220,16 +231,23 @@ class MeasureJob:
         return found
 
     def _probes(self, piece: Piece) -> int | NDArray[np.int64]:
-        if self._probe is not None:
-            return self._probe
-        names = list(self.arm.probes)
-        column = piece.texts["probe"]
+        return self._index(piece, "probe", list(self.arm.probes)) if self._probe is None else self._probe
+
+    def _loads(self, piece: Piece, column: str) -> F64:
+        """(N, 4) what was carried."""
+        names = [*self.arm.payloads, NOTHING_CARRIED]
+        loads: F64 = np.array([self.arm.load_named(name) for name in names])[self._index(piece, column, names)]
+        return loads
+
+    def _index(self, piece: Piece, name: str, names: list[str]) -> NDArray[np.int64]:
+        """(N,) into names, of a column of them. Raises UlnaInputError for one that is none."""
+        column = piece.texts[name]
         index = column.replace_strict(names, list(range(len(names))), default=-1, return_dtype=pl.Int64).to_numpy()
         if (index < 0).any():
             row = int(np.argmax(index < 0))
             raise UlnaInputError(
-                f"{self.header.path}: {self.header.at(piece.before + row + 1, 'probe')}: arm "
-                f"'{self.arm.name}' has no probe '{column[row]}'.{nearest(str(column[row]), names)}"
+                f"{self.header.path}: {self.header.at(piece.before + row + 1, name)}: arm "
+                f"'{self.arm.name}' has no {name} '{column[row]}'.{nearest(str(column[row]), names)}"
             )
         return np.ascontiguousarray(index)
 

@@ -24,6 +24,8 @@ class Like:
     """rad, deg or counts."""
     probe: str | None
     """Which was on, where the study says so of the whole file."""
+    payload: str | None
+    """What was carried, where the study says so of the whole file."""
     keys: dict[str, Any]
     """Of `TableKeys`; columns and labels that only a calibration needs are left out."""
     study: Path
@@ -48,7 +50,7 @@ def like_study(path: Path, number: int | None = None) -> Like:
     Raises UlnaInputError for a study that cannot be read, or where they differ and nobody says which is meant.
     """
     file = study_file(path)
-    found = [_of(entry, file.units.angle, path, k) for k, entry in enumerate(file.readings, start=1)]
+    found = [_of(entry, file.units.angle, file.carried, path, k) for k, entry in enumerate(file.readings, start=1)]
     if number is not None:
         if not 1 <= number <= len(found):
             raise UlnaInputError(
@@ -69,7 +71,7 @@ def _is_measured_with(column: str) -> bool:
     return column in ("id", "probe") or is_condition(column) or re.fullmatch(r"[qp][0-9]+", column) is not None
 
 
-def _of(entry: ReadingsEntry, angle: str, path: Path, number: int) -> Like:
+def _of(entry: ReadingsEntry, angle: str, carried: str | None, path: Path, number: int) -> Like:
     usual = TableKeys()
     keys = {key: getattr(entry, key) for key in TableKeys.model_fields if getattr(entry, key) != getattr(usual, key)}
     columns, names = dict(entry.columns or {}), dict(entry.names or {})
@@ -83,4 +85,13 @@ def _of(entry: ReadingsEntry, angle: str, path: Path, number: int) -> Like:
     remarks = []
     if entry.where is not None:
         remarks.append(f"{path}: key 'readings.{number}.where' is not used: every row is measured.")
-    return Like(entry.angle or angle, entry.probe, keys, path, number, [*unused, *(entry.ignore or ())], remarks)
+    return Like(
+        entry.angle or angle,
+        entry.probe,
+        entry.payload or carried,
+        keys,
+        path,
+        number,
+        [*unused, *(entry.ignore or ())],
+        remarks,
+    )

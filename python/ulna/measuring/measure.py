@@ -11,6 +11,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import ArrayLike
 
+from ulna.arm.data import Loads
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
 from ulna.formats.frames import is_frame
@@ -47,6 +48,7 @@ class How(TypedDict, total=False):
     names: Mapping[str, Mapping[str, str | Sequence[str]]] | None
     temperature_c: ArrayLike | None
     approach: ArrayLike | None
+    payload: Loads
     covariance: bool
     force: bool
     progress: Progress | None
@@ -89,6 +91,7 @@ def measure(
     names: Mapping[str, Mapping[str, str | Sequence[str]]] | None = None,
     temperature_c: ArrayLike | None = None,
     approach: ArrayLike | None = None,
+    payload: Loads = None,
     covariance: bool = False,
     force: bool = False,
     progress: Progress | None = None,
@@ -105,7 +108,8 @@ def measure(
     `separator`, `decimal`, `thousands`, `encoding`, `comment`, `header`, `units_row`, `fill_down`, `sheet`, `dataset`,
     `columns`, `names`: how the table is written, as in a study's ``[[readings]]``.
     `temperature_c`: of all readings, °C, where the arm's links grow with it and no column ``temperature`` has it; of an
-    array also (N,) or (N, n). `approach`: of an array, (N, n), as `Arm.tip` has it.
+    array also (N,) or (N, n). `approach`: of an array, (N, n), as `Arm.tip` has it. `payload`: what was carried, the
+    name of one of the arm's or "none", where no column ``payload`` has it; of an array as `Arm.tip` has it.
     `covariance`: of a file, with a result, also the columns ``c_xx, c_xy, c_xz, c_yy, c_yz, c_zz`` of each point's
     covariance matrix, in the square of the unit.
     `out`: of a file, where to write: .csv, .tsv, .parquet, .xlsx or .jsonl, whole or not at all; None: in memory.
@@ -130,13 +134,14 @@ def measure(
     if not isinstance(readings, str | os.PathLike):
         _check_in_memory(out, units)
         if is_frame(readings):
-            return measure_frame(arm, readings, layout, one_probe(probe), angle, u_rad, one_number(temperature_c))
-        return measure_array(arm, readings, probe, angle, u_rad, temperature_c, approach)
+            alike = one_number(temperature_c), one_load(payload)
+            return measure_frame(arm, readings, layout, one_probe(probe), angle, u_rad, *alike)
+        return measure_array(arm, readings, probe, angle, u_rad, temperature_c, approach, payload)
     path = None if out is None else Path(out)
     if path is not None:
         writer_of(path)  # an ending that cannot be written is told before the work
     given = (one_probe(probe), angle, units, u_rad, layout, one_number(temperature_c), covariance)
-    job = MeasureJob(arm, Path(readings), *given)
+    job = MeasureJob(arm, Path(readings), *given, payload=one_load(payload))
     if path is None:
         table = pl.concat(list(job.frames(progress)))
         return Measurement(job.rows, job.columns, job.unit, None, table, job.notes)
@@ -215,3 +220,10 @@ def one_number(temperature_c: ArrayLike | None) -> float | None:
     if temperature_c is None or np.ndim(temperature_c) == 0:
         return None if temperature_c is None else float(np.asarray(temperature_c))
     raise wrong_type(temperature_c, "one temperature_c: of a table, each row's stands in the column 'temperature'")
+
+
+def one_load(payload: Loads) -> str | None:
+    """Of a table: rows have their own in its column. Raises TypeError for several, and for numbers."""
+    if payload is None or isinstance(payload, str):
+        return payload
+    raise wrong_type(payload, "one payload's name: of a table, each row's stands in the column 'payload'")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.arm import Arm
@@ -117,7 +116,7 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
     files += [] if study is None else [file.path for file in study.files]
     return PlanSpec(
         artefact=artefact,
-        encoder_rad=np.asarray(encoder_of(file.noise.encoder, arm, path)) * units.rad,
+        encoder_rad=encoder_of(file.noise.encoder, arm, units, path),
         seat_mm=file.noise.seat * units.mm,
         choose=table.choose,
         touches=table.touches or (kind.touches if kind.scattered else 1),

@@ -54,6 +54,7 @@ def check(arm: Arm, spec: PlanSpec) -> None:
             "more. Raise touches."
         )
     arm.check_covered(spec.label, "plans")
+    arm.check_turns(spec.label, "plans")
     if spec.candidates < LEAST_CANDIDATES:
         raise UlnaInputError(
             f"{spec.label}: {spec.candidates} candidates; expected {LEAST_CANDIDATES} or more: of few places nobody "

@@ -105,6 +105,8 @@ def propose(answers: Answers) -> Proposal:
     found = drawn_arm(answers)
     questions = found if isinstance(found, list) else []
     drawn = None if isinstance(found, list) else found
+    if drawn is not None:
+        drawn.arm.check_turns(path, "studies proposed from tables")
     angles = angles_of(path, columns, layout.columns, None if drawn is None else drawn.joint_names)
     if isinstance(angles, Question):
         raise UnansweredError(str(path), [*questions, angles])

@@ -50,8 +50,8 @@ class Stated:
 
 def kind_question() -> Question:
     """Which artefact was touched."""
-    *most, last = KINDS
-    return Question("artefact", f"--artefact {', '.join(most)} or {last}", "what was touched", tuple(KINDS))
+    *most, last = touched = tuple(name for name, kind in KINDS.items() if not kind.turned)
+    return Question("artefact", f"--artefact {', '.join(most)} or {last}", "what was touched", touched)
 
 
 def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated | list[Question]:
@@ -63,6 +63,12 @@ def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated |
             f"--artefact: got '{answers.artefact}', expected a kind of artefact.{nearest(answers.artefact, KINDS)}"
         )
     kind = KINDS[answers.artefact]
+    if kind.turned:
+        raise UlnaInputError(
+            f"--artefact: got '{kind.name}'; expected something that is touched: orientations are read beside places "
+            "of the same target. Make the study of the places, and add a second [[readings]] table and "
+            f'[artefact.target] with kind = "{kind.name}" to it.'
+        )
     fields = kind.table.model_fields
     own_points = {"x", "y", "z"} <= {column.name.casefold() for column in columns}
     wanted = [name for name in FLAGS if name in fields and (fields[name].is_required() or name == "features")]

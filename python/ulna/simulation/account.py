@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
+from ulna.arm.payload import Payload
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
@@ -34,7 +35,7 @@ def account(simulation: Simulation, study: Study, truth: Truth) -> dict[str, Any
         "reads_counts": simulation.step_rad is not None,
         "parameters": parameters,
         "artefacts": [_artefact(group, true) for group, true in pairs],
-        "placements": [placement for group, true in pairs for placement in _placements(group, true)],
+        "placements": [placement for group, true in pairs for placement in _placements(group, true, arm.payloads)],
         "missed": [missed for group, true in pairs for missed in _missed(group, true)],
     }
 
@@ -63,11 +64,12 @@ def _artefact(group: Readings, true: TrueTouching) -> dict[str, Any]:
     }
 
 
-def _placements(group: Readings, true: TrueTouching) -> Iterator[dict[str, Any]]:
+def _placements(group: Readings, true: TrueTouching, payloads: Mapping[str, Payload]) -> Iterator[dict[str, Any]]:
     """Where the artefact's origin is and how its axes (rows) stand in the base frame."""
     standings = true.standings
     origins_mm, axes = standings.origin_mm.tolist(), standings.axes.tolist()
-    of_places = {each.said: drawn.tolist() for each, drawn in standings.drawn.items() if drawn.ndim == 1}
+    told = {each.said: each.of_places(drawn, payloads) for each, drawn in standings.drawn.items()}
+    of_places = {said: each for said, each in told.items() if each is not None}
     for k, (origin_mm, own) in enumerate(zip(origins_mm, axes, strict=True)):
         placement = {"artefact": group.artefact.name, "placement": str(k + 1), "origin_mm": origin_mm, "axes": own}
         yield placement | {said: values[k] for said, values in of_places.items()}

@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ulna.arm.arm import Arm
-from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.conditions import PAYLOAD, TEMPERATURE
+from ulna.arm.payload import NOTHING_CARRIED, joined_payloads, payloads_of
 from ulna.arm.stated import encoder_of, one_per_joint, travel_of, volume_of
 from ulna.artefacts.kinds import KINDS, check_kinds, made
 from ulna.artefacts.tables import Place, TouchedTable
@@ -17,6 +18,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.simulation.spec import Drawing, Missed, Simulation, Temperature, Touching
 from ulna.simulation.tables import DrawingTable, SimulationFile, TemperatureTable
 from ulna.study.data import FitOptions
+from ulna.study.readings.payloads import check_carried
 
 WHAT = 'a simulation file (TOML, format = "ulna-simulation/1")'
 
@@ -29,6 +31,7 @@ def load_simulation(path: Path) -> Simulation:
     file = fill(SimulationFile, document, path)
     units, arm_path = file.units, path.parent / file.arm
     arm = _counted(file, Arm.load(arm_path), path)
+    arm = replace(arm, payloads=joined_payloads(arm.payloads, payloads_of(file.payload, units, path), path))
     place = Place(path, units, [])
     touching = [_touching(name, table, place) for name, table in file.artefact.items()]
     encoder = file.noise.encoder
@@ -37,11 +40,12 @@ def load_simulation(path: Path) -> Simulation:
         touching=touching,
         seed=file.seed,
         drawing=_drawing(file.drawing, units),
-        encoder_rad=None if encoder is None else encoder_of(encoder, arm, path) * units.rad,
+        encoder_rad=None if encoder is None else encoder_of(encoder, arm, units, path),
         seat_mm=file.noise.seat * units.mm,
         quantised=file.noise.quantise,
         travel_rad=travel_of(file.travel, arm, units, path),
         temperature=_temperature(file.temperature, arm, path),
+        carried=_carried(file.carried, arm, path),
         missed=None if file.missed is None else Missed(file.missed.share, file.missed.size * units.mm),
         volume_mm=volume_of(file.volume, units, path),
         fit=FitOptions(**file.fit.model_dump()),
@@ -94,3 +98,24 @@ def _temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> Temper
             "of its joints in the arm file. Add it, or remove the key."
         )
     return Temperature(table.mean, table.spread)
+
+
+def _carried(given: str | list[str] | None, arm: Arm, path: Path) -> tuple[str, ...]:
+    names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
+    if not names and PAYLOAD not in arm.needs:
+        return ()
+    if PAYLOAD not in arm.needs:
+        gives_way = PAYLOAD in arm.uses
+        what = "no load is stated" if gives_way else f"arm '{arm.name}' bends under no load"
+        raise UlnaInputError(
+            f"{path}: key 'carried': {what}; expected compliance of joints in the arm file, and [payload.NAME] with "
+            "mass and centre. Add what is missing, or remove the key."
+        )
+    if not names:
+        raise UlnaInputError(
+            f"{path}: key 'carried' is missing: arm '{arm.name}' may carry {', '.join(arm.payloads)}; expected which "
+            f"of them it carries, or '{NOTHING_CARRIED}'. Add it: one, or a list of which each placement has one."
+        )
+    for name in names:
+        check_carried(name, arm, f"{path}: key 'carried'")
+    return names

@@ -46,10 +46,11 @@ def places(
     postures: int,
     rng: np.random.Generator,
     temperature_c: float | None = None,
+    payload: str | None = None,
 ) -> tuple[F64, F64]:
     """(count, K, 3) places and directions at random within reach and box, (count, K, postures, n) postures there.
 
-    temperature_c: of the arm, where it matters. Raises UlnaInputError where none are found.
+    temperature_c, payload: of the arm, where they matter. Raises UlnaInputError where none are found.
     """
     at: list[F64] = []
     poses: list[F64] = []
@@ -58,7 +59,7 @@ def places(
     while missing and barren < BARREN:
         placed_mm = features_mm[None] if standing.fixed else _near(standing, mover, probe, missing, rng)
         points_mm = np.repeat(placed_mm.reshape(-1, 3), postures, axis=0)
-        conditions = mover.arm.conditions(len(points_mm), temperature_c)
+        conditions = mover.arm.conditions(len(points_mm), temperature_c, payload=payload)
         seed = int(rng.integers(2**63))
         q_rad, reached = postures_on(standing, mover, points_mm, probe, conditions, seed)
         shape = (len(placed_mm), len(features_mm), postures)

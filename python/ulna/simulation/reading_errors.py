@@ -40,7 +40,9 @@ def as_drawn(
     for k, (name, unit) in enumerate(zip(arm.parameter_names, arm.parameter_units, strict=True)):
         if name in ("joint.1.theta0", "joint.1.d") or extra_of(name) is not None:
             continue
-        twist = name.endswith(("alpha", "beta"))
+        # theta0 of a joint that slides is no zero offset: it says how the links beside it are turned
+        slid = name.endswith(".theta0") and arm.joints[int(name.split(".")[1]) - 1].slides
+        twist = slid or name.endswith(("alpha", "beta"))
         if twist and wrong_twist_rad is None:
             wrong[k] = np.round(wrong[k] / (np.pi / 2)) * (np.pi / 2)
         else:

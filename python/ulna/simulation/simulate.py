@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.attitudes import attitudes
 from ulna.arm.effects.effects import without
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
@@ -161,6 +162,7 @@ def _readings(
     measured_mm = kind.measured_mm(touching.artefact, true, touches, places, rng)
     of_row = slice(None, None, kind.poses)
     labels = np.arange(1, places + 1).astype(str).astype(object)
+    seen = _seen(simulation, touching.artefact, true, touches, standings, rng) if kind.turned else None
     return Readings(
         artefact=touching.artefact,
         q_rad=np.ascontiguousarray(read_rad[:, of_row].reshape(rows, n)),
@@ -171,8 +173,26 @@ def _readings(
         placement=np.repeat(labels, rows // places),
         row=np.arange(1, rows + 1),
         file=np.zeros(rows, np.int64),
+        rotation_rad=None if seen is None else seen[0],
+        rotation_u_rad=None if seen is None else seen[1],
         **_said(standings, per, kind.poses),
     )
+
+
+def _seen(
+    simulation: Simulation,
+    stated: Artefact,
+    true: Artefact,
+    touches: Touches,
+    standings: Standings,
+    rng: np.random.Generator,
+) -> tuple[F64, F64 | None] | None:
+    """What an instrument says of a target on the last link, row after row."""
+    places, per, n = standings.q_rad.shape
+    q_rad = np.ascontiguousarray(standings.q_rad.reshape(places * per, n))
+    conditions = simulation.arm.conditions(places * per, **_said(standings, per, 1))
+    held = attitudes(simulation.arm.core, q_rad, np.tile(touches.probe, places), conditions)
+    return kind_of(true).seen(stated, true, held, np.repeat(standings.axes, per, axis=0), rng)
 
 
 def _said(standings: Standings, per: int, poses: int) -> dict[str, Any]:

@@ -96,6 +96,8 @@ class Simulation:
     travel_rad: F64 | None = None
     """(n, 2) lowest and highest encoder angle; None: the arm's limits, and a whole turn of joints that have none."""
     temperature: Temperature | None = None
+    carried: tuple[str, ...] = ()
+    """Names of what the arm carries, one of them at each placement; "none": no load."""
     missed: Missed | None = None
     volume_mm: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
     """Lowest and highest corner of the box, in the base frame, in which artefacts stand; None: all that is in reach."""

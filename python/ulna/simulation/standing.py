@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ulna.arm.conditions import CONDITIONS, TEMPERATURE, Condition
+from ulna.arm.conditions import CONDITIONS, PAYLOAD, TEMPERATURE, Condition
 from ulna.artefacts.touching import Touches
 from ulna.geometry.rigid import motions
 from ulna.ground.arrays import F64, I64, Bool, Progress
@@ -147,9 +148,11 @@ def _touch(
     noise_mm = simulation.seat_mm * rng.standard_normal((places, per, 3))
     missed, off_mm = _missed(simulation, touches, axes, rng)
     arm, warm = mover.arm, simulation.temperature
-    stated: dict[Condition, tuple[float, float]] = {}
+    stated: dict[Condition, Any] = {}
     if warm is not None:
         stated[TEMPERATURE] = (warm.mean_c, warm.spread_c)
+    if simulation.carried:
+        stated[PAYLOAD] = np.array([arm.load_named(name) for name in simulation.carried])
     drawn = {each: each.drawn(places, per, arm.n, stated.get(each), rng) for each in CONDITIONS if each in arm.needs}
     said = {each.said: each.of_touches(values, per) for each, values in drawn.items()}
     conditions = arm.conditions(places * per, **said)

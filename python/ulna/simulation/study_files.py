@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import polars as pl
 
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
+from ulna.arm.payload import Payload
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
@@ -70,12 +72,16 @@ def study_toml(study: Study, counts: bool) -> str:
 def write_tables(study: Study, step_rad: F64 | None, folder: Path) -> None:
     """The readings, and the features of points, into a folder."""
     for group in study.readings:
-        readings_table(group, list(study.arm.probes), step_rad).write_csv(folder / f"{group.artefact.name}.csv")
+        readings_table(group, list(study.arm.probes), step_rad, study.arm.payloads).write_csv(
+            folder / f"{group.artefact.name}.csv"
+        )
         if kind_of(group.artefact).features_file:
             features_table(group.artefact).write_csv(folder / features_file(group.artefact))
 
 
-def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> pl.DataFrame:
+def readings_table(
+    group: Readings, probes: list[str], step_rad: F64 | None, payloads: Mapping[str, Payload] = MappingProxyType({})
+) -> pl.DataFrame:
     """Columns as in a readings file; angles in rad, or whole counts of step_rad (n,)."""
     columns: dict[str, Any] = {"placement": group.placement.tolist()}
     if len(group.artefact.features) > 1:
@@ -90,12 +96,10 @@ def readings_table(group: Readings, probes: list[str], step_rad: F64 | None) -> 
     measured = kind_of(group.artefact).measured_column
     if measured is not None and group.artefact.length_mm is None and group.length_mm is not None:
         columns[measured] = group.length_mm
+    if group.rotation_rad is not None:
+        columns |= {name: group.rotation_rad[:, k] for k, name in enumerate(("rx", "ry", "rz"))}
     for condition, name, said in group.conditions():
-        numbers = said if condition.allowed is None else said.astype(np.int64)
-        if said.ndim == 1:
-            columns[name] = numbers
-        else:
-            columns |= {f"{name}{k + 1}": numbers[:, k] for k in range(said.shape[1])}
+        columns |= condition.written(said, name, payloads)
     return pl.DataFrame(columns)
 
 

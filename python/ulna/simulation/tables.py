@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from ulna.arm.payload import PayloadTable
 from ulna.arm.stated import AmountEach, PositiveEach, TravelTable, VolumeTable
 from ulna.artefacts.kinds import SimulatedTable
 from ulna.formats.models import Strict
@@ -81,6 +82,10 @@ class SimulationFile(Strict):
     noise: NoiseTable = NoiseTable()
     travel: TravelTable | None = None
     temperature: TemperatureTable | None = None
+    payload: dict[str, PayloadTable] | None = None
+    """What the arm may carry beside its own masses, by name; the true arm needs compliance."""
+    carried: str | Annotated[list[str], Field(min_length=1)] | None = None
+    """Which of them it carries, "none" for no load: one for all, or several, one of them drawn for each placement."""
     missed: MissedTable | None = None
     volume: VolumeTable | None = None
     artefact: Annotated[dict[str, SimulatedTable], Field(min_length=1)]

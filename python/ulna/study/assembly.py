@@ -45,7 +45,10 @@ def assemble(study: StudyData, hold: Callable[[list[str]], Bool] | None = None) 
         problem = _core.Problem(arm.core, noise.encoder_rad, noise.seat_mm)
         for group in study.readings:
             balls, conditions = balls_mm(study, arm, group), conditions_of(study, arm, group)
-            kind_of(group.artefact).enter(problem, group, balls, conditions)
+            kind = kind_of(group.artefact)
+            if study.noise is not None:
+                kind.check_noise(group, str(study.label))
+            kind.enter(problem, group, balls, conditions)
         names, units = problem.parameter_names, problem.parameter_units
         mask = hold_mask(study, names) if hold is None else hold(names)
         for parameter, (value, u) in priors(study, names, units, problem.parameters.tolist(), mask).items():

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import warnings as python_warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.payload import joined_payloads, payloads_of
+from ulna.arm.stated import check_alike
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import check_kinds, made
 from ulna.artefacts.readings import InputFile, Readings
@@ -20,9 +23,10 @@ from ulna.formats.units import Units
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.study.data import AUTO, FitOptions, Noise, Prior, StudyData
 from ulna.study.options import with_options
-from ulna.study.parameters import check_patterns
+from ulna.study.parameters import check_patterns, remark_vain_payloads
 from ulna.study.readings.columns import Source
 from ulna.study.readings.gathered import gathered
+from ulna.study.readings.payloads import check_carried
 from ulna.study.readings.readings import read_readings
 from ulna.study.tables import FitTable, NoiseTable, PriorTable, StudyFile
 
@@ -44,6 +48,9 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     split = _check_rows(file, path, rows)
     arm_path = path.parent / file.arm
     arm, arm_digest = Arm.load_and_hash(arm_path)
+    payloads = joined_payloads(arm.payloads, payloads_of(file.payload, file.units, path), path)
+    arm = replace(arm, payloads=payloads)
+    check_carried(file.carried, arm, f"{path}: key 'carried'")
     fit = _fit(file.fit, file.units)
     noise = noise_of_table(file.noise, file.units, arm, path)
     remarks: list[str] = []
@@ -54,6 +61,7 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
         artefacts[name] = made(name, table, place)
     readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
     study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
+    remark_vain_payloads(study)
     with_options(study)  # what cannot be asked is told now, not after the work
     check_patterns(study)
     for remark in remarks:
@@ -107,7 +115,7 @@ def _readings(
     for number, entry in enumerate(file.readings, start=1):
         if rows == "check" and entry.split is None:
             continue
-        source = Source(path, f"readings.{number}", entry, len(files), arm_path)
+        source = Source(path, f"readings.{number}", entry, len(files), arm_path, file.carried)
         read, used = read_readings(source, arm, artefacts, file.units, remarks, rows)
         files.append(used)
         parts += read
@@ -120,13 +128,14 @@ def noise_of_table(table: NoiseTable | None, units: Units, arm: Arm, path: Path)
         return None
     encoder_rad = None
     if table.encoder is not None:
+        check_alike(not isinstance(table.encoder, list), arm, "noise.encoder", path, "in the unit of lengths")
         each = table.encoder if isinstance(table.encoder, list) else [table.encoder] * arm.n
         if len(each) != arm.n:
             raise UlnaInputError(
                 f"{path}: key 'noise.encoder': got {len(each)} numbers, expected one, or {arm.n}: one per joint of arm "
                 f"'{arm.name}'. Correct it."
             )
-        encoder_rad = np.array(each) * units.rad
+        encoder_rad = np.array(each) * arm.each(units.rad, units.mm)
     return Noise(encoder_rad, None if table.seat is None else table.seat * units.mm)
 
 

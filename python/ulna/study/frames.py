@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,6 +20,7 @@ from numpy.typing import ArrayLike
 from ulna.arm.arm import Arm
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
+from ulna.arm.payload import Payload
 from ulna.artefacts.readings import InputFile
 from ulna.artefacts.tables import Place
 from ulna.formats.header import Header
@@ -33,7 +35,7 @@ from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.ground.provided import provided
 from ulna.study.data import FitOptions, Noise, StudyData, Taken
 from ulna.study.options import with_options
-from ulna.study.parameters import check_patterns
+from ulna.study.parameters import check_patterns, remark_vain_payloads
 from ulna.study.readings.columns import ReadingsEntry, Source, is_length, known_columns
 from ulna.study.readings.gathered import gathered
 from ulna.study.readings.readings import WHAT, read_readings
@@ -59,12 +61,15 @@ class Asked:
     """Of a table [[readings]], as a study file would say them; without those that nobody gave."""
     encoder_u_rad: ArrayLike | None = None
     seat_u_mm: float | None = None
+    payloads: Mapping[str, Payload] = field(default_factory=dict)
+    """What the arm carried beside its own masses, by name."""
     fit: dict[str, Any] = field(default_factory=dict)
 
 
 def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, make: type[AnyStudy]) -> AnyStudy:
     """As `Study.from_frame` says."""
     arm = as_arm(given)
+    arm = replace(arm, payloads={**arm.payloads, **asked.payloads})
     remarks: list[str] = []
     files: list[InputFile] = []
     if isinstance(given, str | os.PathLike):
@@ -83,11 +88,11 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     table = frame_table(frame, FRAME, layout, WHAT)
     table, columns = _with_own_units(table, arm, dict(layout.columns))
     entry |= {"columns": columns} if columns else {}
-    header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True))
+    header = named_header(table, replace(layout, columns=columns), known_columns(arm.n, True, True))
     _check_angles(header, arm)
     entry["angle"] = entry.get("angle") or asked.angle or _angle(header, arm)
-    length_unit = _length_unit(header, asked.length_unit)
-    source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, table)
+    length_unit = _length_unit(header, asked.length_unit, arm)
+    source = Source(LABEL, "frame", fill(ReadingsEntry, entry, LABEL), len(files), arm_file, None, table)
     parts, used = read_readings(source, arm, found, _units(length_unit), remarks, asked.rows)
     files.append(used)
     groups = gathered(parts, LABEL, arm, found, files, remarks, asked.rows)
@@ -95,6 +100,7 @@ def study_of_frame(given: ArmLike, frame: Any, artefacts: Any, asked: Asked, mak
     split = None if "split" not in entry else asked.rows
     study = make(None, arm, groups, noise, FitOptions(), files, remarks, split, taken)
     study = with_options(study, **asked.fit)
+    remark_vain_payloads(study)
     check_patterns(study)
     for remark in remarks:
         warnings.warn(remark, InputWarning, stacklevel=3)
@@ -108,7 +114,7 @@ def _units(length_unit: str | None) -> Units:
 def _with_own_units(table: FrameTable, arm: Arm, columns: dict[str, str]) -> tuple[FrameTable, dict[str, str]]:
     """Columns whose names end in a unit, `q1_deg` or `x_mm`, under Ulna's names, and the table that knows the units."""
     units: dict[str, str] = {}
-    known = known_columns(arm.n, True)
+    known = known_columns(arm.n, True, True)
     for name in table.columns:
         match = re.fullmatch(r"(.+)_(rad|deg|counts|mm|m|in)", name)
         if match is None:
@@ -131,7 +137,10 @@ def _check_angles(header: Header, arm: Arm) -> None:
 
 def _angle(header: Header, arm: Arm) -> str:
     """The unit that the columns' names say. Raises UlnaInputError where they say none, or several."""
-    said = {ANGLES.unit(header.units.get(header.own(f"q{k + 1}"), "")) for k in range(arm.n)}
+    turning = np.flatnonzero(~arm.slides).tolist()
+    said = {ANGLES.unit(header.units.get(header.own(f"q{k + 1}"), "")) for k in turning}
+    if not turning:
+        return "rad"
     if len(said) == 1 and None not in said:
         return str(said.pop())
     words = "is not stated, and never guessed" if said <= {None} else "is not the same in all columns' names"
@@ -141,9 +150,10 @@ def _angle(header: Header, arm: Arm) -> str:
     )
 
 
-def _length_unit(header: Header, stated: str | None) -> str | None:
+def _length_unit(header: Header, stated: str | None, arm: Arm) -> str | None:
     """The unit of lengths in the frame. Raises UlnaInputError where it has some and nobody says their unit."""
-    there = [column for column in header.columns if is_length(column)]
+    slid = [f"{letter}{k + 1}" for letter in "qp" for k in np.flatnonzero(arm.slides)]
+    there = [column for column in header.columns if is_length(column) or column in slid]
     said = {column: header.units.get(header.own(column), stated) for column in there}
     for column, unit in said.items():
         if unit is None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import PAYLOAD
 from ulna.arm.effects.effect import Effect
 from ulna.arm.effects.effects import EFFECTS, effect_named, extra_of, with_extras
 from ulna.ground.arrays import Bool
@@ -20,12 +21,22 @@ def start_arm(study: StudyData) -> Arm:
     """The study's arm with zero of the blocks that are asked for beyond what it has. Raises UlnaInputError."""
     arm, extras = study.arm, study.fit.extras
     for extra in extras:
-        effect_named(extra).check_asked([joint.effects for joint in arm.joints], arm.name, study.label)
+        effect_named(extra).check_asked([joint.effects for joint in arm.joints], arm.name, study.label, arm.heaviest_kg)
     if not extras:
         return arm
     effects = with_extras([joint.effects for joint in arm.joints], extras, study.fit.harmonics)
     joints = [replace(joint, effects=own) for joint, own in zip(arm.joints, effects, strict=True)]
     return replace(arm, joints=tuple(joints))
+
+
+def remark_vain_payloads(study: StudyData) -> None:
+    """Adds a remark where the readings say what was carried, and the model has nothing that gives way to it."""
+    said = any(group.payload is not None for group in study.readings)
+    if said and PAYLOAD not in start_arm(study).uses:
+        study.warnings.append(
+            f"{study.label}: the readings say what was carried, but no joint of arm '{study.arm.name}' gives way to "
+            'it: the loads are not used. Ask for it, extras = ["compliance"] in [fit], or leave them out.'
+        )
 
 
 def hold_mask(study: StudyData, names: Sequence[str]) -> Bool:
@@ -37,9 +48,15 @@ def hold_mask(study: StudyData, names: Sequence[str]) -> Bool:
     for value, patterns, key in ((True, study.fit.free, "fit.free"), (False, study.fit.hold, "fit.hold")):
         for pattern in patterns:
             free[matching(study, pattern, names, key)] = value
-    asked = [extra_of(name) in (None, *study.fit.extras) for name in names]
+    asked = [extra_of(name) in (None, *study.fit.extras) and not _of_no_turn(study, name) for name in names]
     hold: Bool = ~(free & np.array(asked, dtype=bool))
     return hold
+
+
+def _of_no_turn(study: StudyData, name: str) -> bool:
+    """Whether a parameter is of what only joints do that turn, and its joint slides."""
+    extra = extra_of(name)
+    return extra is not None and EFFECTS[extra].of_turn and study.arm.joints[int(name.split(".")[1]) - 1].slides
 
 
 def matching(study: StudyData, pattern: str, names: Sequence[str], key: str) -> Bool:

@@ -10,6 +10,7 @@ from typing import Any, Literal, Self
 from numpy.typing import ArrayLike
 
 from ulna.arm.given import ArmLike
+from ulna.arm.payload import Payload
 from ulna.ground.shown import About, Shown
 from ulna.study.about import about_study
 from ulna.study.data import StudyData
@@ -45,6 +46,7 @@ class Study(Shown, StudyData):
         probe: str | None = None,
         placement: str | None = None,
         feature: str | None = None,
+        payload: str | None = None,
         approach: Literal["column", "order"] | None = None,
         ignore: Sequence[str] | None = None,
         where: Mapping[str, Any] | None = None,
@@ -52,6 +54,7 @@ class Study(Shown, StudyData):
         rows: Literal["fit", "check", "all"] = "fit",
         encoder_u_rad: ArrayLike | None = None,
         seat_u_mm: float | None = None,
+        payloads: Mapping[str, Payload] | None = None,
         **fit: Any,
     ) -> Self:
         """A study of readings in memory; the same numbers in a file give the same study, to the last digit.
@@ -66,9 +69,11 @@ class Study(Shown, StudyData):
         columns: Ulna's name = the frame's; names: of a column with labels, Ulna's name = what stands in the cells.
         guess: recognise columns by their headings and what stands in them, as `ulna new` does; what each was taken for,
         and why, is in `taken` and in how the study shows itself. What leaves a doubt is an error that asks.
-        artefact, probe, placement, feature: of all rows, where there is no such column. approach, ignore, where, split:
-        as in a study's ``[[readings]]``; rows: which side of the split.
+        artefact, probe, placement, feature, payload: of all rows, where there is no such column. approach, ignore,
+        where, split: as in a study's ``[[readings]]``; rows: which side of the split.
         encoder_u_rad: standard deviation of an encoder's reading, one or (n,); seat_u_mm: of a touch, per coordinate.
+        payloads: what the arm carried beside its own masses, by name, ``{"gripper": Payload(2.5, (0, 0, 80))}``, beside
+        the arm's own.
         fit: fields of `FitOptions`, such as ``hold=["joint.1.d"]``.
 
         Raises UlnaInputError naming the row and column of what cannot be used; TypeError for what is no table; warns
@@ -81,10 +86,10 @@ class Study(Shown, StudyData):
             "probe": probe,
             "placement": placement,
         }
-        said |= {"feature": feature, "approach": approach, "where": where, "split": split}
+        said |= {"feature": feature, "payload": payload, "approach": approach, "where": where, "split": split}
         said |= {"ignore": None if ignore is None else list(ignore), "angle": angle}
         keys = {key: value for key, value in said.items() if value is not None}
-        asked = Asked(angle, length_unit, guess, rows, keys, encoder_u_rad, seat_u_mm, fit)
+        asked = Asked(angle, length_unit, guess, rows, keys, encoder_u_rad, seat_u_mm, payloads or {}, fit)
         return study_of_frame(arm, frame, artefacts, asked, cls)
 
     def about(self) -> About:

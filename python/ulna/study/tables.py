@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.effects.effects import Extra
+from ulna.arm.payload import PayloadTable
 from ulna.arm.stated import PositiveEach
 from ulna.artefacts.kinds import ArtefactTable
 from ulna.formats.models import Strict, table_or_plain
@@ -97,5 +98,9 @@ class StudyFile(Strict):
     units: Units
     readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
     artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
+    payload: dict[str, PayloadTable] | None = None
+    """What the arm carried beside its own masses, by name; readings say which. For compliance."""
+    carried: str | None = None
+    """Which of them in all readings that do not say it themselves; "none": no load."""
     noise: NoiseTable | None = None
     fit: FitTable = Field(default_factory=FitTable)

@@ -58,6 +58,7 @@ class Constrained:
     ) -> None:
         """Raises UlnaInputError for patterns that hold nothing or all, and for tests or arms that cannot be."""
         arm.check_covered(performance.label, "performance files")
+        arm.check_turns(performance.label, "performance files")
         self.performance = performance
         self._workers = workers or Threads()
         self._told = progress if progress is not None else lambda *_: None

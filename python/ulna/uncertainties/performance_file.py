@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.arm import Arm
@@ -152,7 +151,7 @@ def read_performance(path: Path, arm: Arm) -> StatedPerformance:
         spread_mm=file.spread.length * units.mm,
         factor=(low, high),
         hold=tuple(file.spread.hold),
-        encoder_rad=np.asarray(encoder_of(file.noise.encoder, arm, path)) * units.rad,
+        encoder_rad=encoder_of(file.noise.encoder, arm, units, path),
         seat_mm=file.noise.seat * units.mm,
         tests=tuple(_test(table, number, units.mm, path) for number, table in enumerate(file.test, 1)),
         within=file.within,

@@ -34,6 +34,8 @@ class Task:
     """Of the links, where they grow with it."""
     approach: F64 | None = None
     """(N, n) from which side joints were approached, where that matters."""
+    payload: F64 | None = None
+    """(N, 4) what was carried, where that matters: kg and mm."""
     u_temperature_k: float = 0.0
     """Standard uncertainty of that, the same for all touches."""
     inside: bool = False
@@ -50,7 +52,7 @@ class Task:
     def said(self, warmer_k: float = 0.0) -> dict[str, Any]:
         """What `Arm.tip` asks for beside angles and probe, links warmer than stated by so much."""
         warm = None if self.temperature_c is None else self.temperature_c + warmer_k
-        return {"temperature_c": warm, "approach": self.approach}
+        return {"temperature_c": warm, "approach": self.approach, "payload": self.payload}
 
     def values(self, arm: Arm, tips_mm: F64) -> F64:
         """(T, N, 3) tips → (T, values): the measurand's, of a ball with the probe's own taken off."""

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.conditions import APPROACH, TEMPERATURE
+from ulna.arm.conditions import APPROACH, PAYLOAD, TEMPERATURE
 from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.models import Strict, fill
 from ulna.formats.numbers import Coverage, Uncertainty
@@ -23,6 +23,7 @@ from ulna.study.file import noise_of_table
 from ulna.study.readings.checks import check_scale, remark_limits
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.conditions import said_of
+from ulna.study.readings.payloads import carried_in
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.study.tables import NoiseTable
@@ -41,6 +42,8 @@ class TaskReadings(TableKeys):
     """Which probe is on, where the arm has several."""
     feature: str | None = None
     """What was touched, where the file does not say it."""
+    payload: str | None = None
+    """What was carried, where the file does not say it: the name of a [payload] of the arm, or "none"."""
 
 
 class TemperatureTable(Strict):
@@ -87,6 +90,8 @@ class StatedTask:
     noise: Noise | None
     approach: F64 | None = None
     """(N, n) where the file says it."""
+    payload: F64 | None = None
+    """(N, 4) what was carried, where it is said: kg and mm."""
 
 
 def check_temperature(table: TemperatureTable | None, arm: Arm, path: Path) -> None:
@@ -115,6 +120,7 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
         angle=file.readings.angle,
         probe=file.readings.probe,
         feature=file.readings.feature,
+        payload=file.readings.payload,
     )
     source = Source(path, "readings", entry, 0, path)
     layout = Layout.of(file.readings, (f"{path}: key 'readings.", "'"), "[readings]")
@@ -138,11 +144,12 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
         )
     feature = codes(frame, header, source, "feature", features[file.kind], f"a {file.kind}", row)
     noise = noise_of_table(file.noise, file.units, arm, path)
-    approach = said_of(frame, arm.n, header, row).get("approach")
-    effect = arm.needs.get(APPROACH)
-    if effect is not None and approach is None:
-        raise UlnaInputError(
-            f"{source_file}: the {effect.whose} of arm '{arm.name}' {effect.does}, but the readings {APPROACH.unsaid}; "
-            f"expected {APPROACH.columns}. Add them."
-        )
-    return StatedTask(path, file, q_rad, int(probe[0]), each_row(feature, len(row)), noise, approach)
+    said = said_of(frame, arm.n, header, row) | carried_in(frame, header, source, arm, row)
+    for condition, effect in arm.needs.items():
+        if condition is not TEMPERATURE and condition.said not in said:
+            raise UlnaInputError(
+                f"{source_file}: the {effect.whose} of arm '{arm.name}' {effect.does}, but the readings "
+                f"{condition.unsaid}; expected {condition.columns}. Add it."
+            )
+    of = said.get(APPROACH.said), said.get(PAYLOAD.said)
+    return StatedTask(path, file, q_rad, int(probe[0]), each_row(feature, len(row)), noise, *of)

@@ -86,6 +86,7 @@ def uncertainty(
             noise=known.measuring(stated.noise),
             temperature_c=None if warm is None else warm.value,
             approach=stated.approach,
+            payload=stated.payload,
             u_temperature_k=0.0 if warm is None or TEMPERATURE not in arm.needs else warm.u,
             inside=stated.file.inside,
             p=stated.file.p,
@@ -126,6 +127,7 @@ def volume_uncertainty(
         bars=stated.file.bars,
         box_mm=stated.box_mm,
         temperature_c=None if warm is None else warm.value,
+        payload=stated.file.payload,
         u_temperature_k=0.0 if warm is None or TEMPERATURE not in known.arm.needs else warm.u,
         p=stated.file.p,
     )

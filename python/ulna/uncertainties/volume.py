@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.conditions import TEMPERATURE
+from ulna.arm.conditions import PAYLOAD, TEMPERATURE
 from ulna.arm.directions import drawn
 from ulna.arm.lost import lost_steps
 from ulna.arm.reading_noise import ReadingNoise
@@ -49,6 +49,8 @@ class VolumeTask:
     box_mm: Box | None = None
     """Where; None: wherever the arm reaches."""
     temperature_c: float | None = None
+    payload: str | None = None
+    """What is carried, where that matters."""
     u_temperature_k: float = 0.0
     p: float = 0.95
 
@@ -105,7 +107,7 @@ def volume_map(arm: Arm, task: VolumeTask, seed: int = 0, progress: Progress | N
     `arm.uncertainty` must be set. Raises UlnaInputError where no place is found, or no uncertainty is known.
     """
     check_known(arm)
-    arm.check_covered(task.label, "volume files", (TEMPERATURE,))
+    arm.check_covered(task.label, "volume files", (TEMPERATURE, PAYLOAD))
     told = progress if progress is not None else lambda *_: None
     mover, probe = Mover(arm, task.travel_rad), arm.probe_index(task.probe)
     reach_mm = arm.core.reach_mm(probe)
@@ -121,7 +123,7 @@ def volume_map(arm: Arm, task: VolumeTask, seed: int = 0, progress: Progress | N
     for length_mm in lengths_mm:
         ends_mm = np.array([[0.0, 0.0, 0.0], [length_mm, 0.0, 0.0]])
         bar = Standing(ends_mm, f"{task.label}: length {length_mm:g} mm", box_mm=task.box_mm)
-        stands_mm, poses = places(bar, mover, probe, task.bars, 1, rng, task.temperature_c)
+        stands_mm, poses = places(bar, mover, probe, task.bars, 1, rng, task.temperature_c, task.payload)
         u_mm, expanded_mm = account.of_lengths(np.ascontiguousarray(poses[:, :, 0]))
         lengths[length_mm] = Somewhere(stands_mm.mean(axis=1), u_mm, expanded_mm)
         told("places", 1 + len(lengths), total)
@@ -150,7 +152,7 @@ def _points(arm: Arm, task: VolumeTask, mover: Mover, probe: int, rng: np.random
     while found < task.points and rounds < 200:
         points_mm = rng.uniform(low, high, (4 * task.points, 3))
         points_mm = np.ascontiguousarray(points_mm[mover.near_reach(points_mm, probe)][: task.points - found])
-        conditions = arm.conditions(len(points_mm), task.temperature_c)
+        conditions = arm.conditions(len(points_mm), task.temperature_c, payload=task.payload)
         seed = int(rng.integers(2**63))
         q_rad, reached = mover.on_points(points_mm, np.full(len(points_mm), probe), conditions, seed)
         at.append(points_mm[reached])
@@ -202,7 +204,9 @@ class Account:
         for start in range(0, len(q_rad), BLOCK):
             q = q_rad[start : start + BLOCK]
             flat = np.ascontiguousarray(q.reshape(-1, q.shape[2]))
-            ends = self._arm.tip(flat, self._task.probe, self._task.temperature_c).reshape(-1, 2, 3)
+            ends = self._arm.tip(flat, self._task.probe, self._task.temperature_c, payload=self._task.payload).reshape(
+                -1, 2, 3
+            )
             along = ends[:, 1] - ends[:, 0]
             along = along / np.linalg.norm(along, axis=1, keepdims=True)
             shown, others = self._variances(flat, np.stack([-along, along], axis=1)[:, None])
@@ -217,7 +221,7 @@ class Account:
         rest."""
         arm, task = self._arm, self._task
         count, values, each, _ = by_tip.shape
-        moved = arm.jacobian(q_rad, task.probe, task.temperature_c).reshape(count, each, 3, -1)
+        moved = arm.jacobian(q_rad, task.probe, task.temperature_c, payload=task.payload).reshape(count, each, 3, -1)
         rows = np.einsum("mvkj,mkjp->mvp", by_tip, moved)
         if len(self._held):
             self._matters |= np.abs(rows[:, :, self._held]).max(axis=(0, 1)) * self._drawn > task.noise.moves_mm
@@ -228,14 +232,17 @@ class Account:
             parameters[away.any(axis=2)] = np.nan
         others = np.zeros((count, values))
         if task.noise.encoder_rad is not None:
-            at = arm.conditions(len(q_rad), task.temperature_c)
+            at = arm.conditions(len(q_rad), task.temperature_c, payload=task.payload)
             turned = arm.core.encoder_jacobian(q_rad, arm.probe_index(task.probe), **at).reshape(count, each, 3, -1)
             others += ((np.einsum("mvkj,mkji->mvki", by_tip, turned) * task.noise.encoder_rad) ** 2).sum(axis=(2, 3))
         by_touch = (by_tip**2).sum(axis=(2, 3))
         shown = parameters + task.noise.estimated_mm2 * by_touch
         others += task.noise.stated_mm2 * by_touch
         if task.u_temperature_k and task.temperature_c is not None:
-            warm, cold = (arm.tip(q_rad, task.probe, task.temperature_c + step) for step in (STEP_K, -STEP_K))
+            warm, cold = (
+                arm.tip(q_rad, task.probe, task.temperature_c + step, payload=task.payload)
+                for step in (STEP_K, -STEP_K)
+            )
             by_kelvin = ((warm - cold) / (2.0 * STEP_K)).reshape(count, each, 3)
             others += (np.einsum("mvkj,mkj->mv", by_tip, by_kelvin) * task.u_temperature_k) ** 2
         return shown, others

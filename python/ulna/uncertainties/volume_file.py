@@ -18,6 +18,7 @@ from ulna.ground.arrays import F64
 from ulna.study.data import Noise
 from ulna.study.file import noise_of_table
 from ulna.study.readings.checks import named_probe
+from ulna.study.readings.payloads import check_carried
 from ulna.study.tables import NoiseTable
 from ulna.uncertainties.task_file import WHAT as WHAT_TASK
 from ulna.uncertainties.task_file import TemperatureTable, check_temperature
@@ -47,6 +48,8 @@ class VolumeFile(Strict):
     noise: NoiseTable | None = None
     """In place of what the calibration's study stated."""
     temperature: TemperatureTable | None = None
+    payload: str | None = None
+    """What is carried: the name of a [payload] of the arm, or "none"."""
     p: Coverage = 0.95
     """Coverage probability."""
 
@@ -77,6 +80,7 @@ def read_volume(path: Path, arm: Arm) -> StatedVolume:
     check_format(document, path, "ulna-volume")
     file = fill(VolumeFile, document, path)
     check_temperature(file.temperature, arm, path)
+    check_carried(file.payload, arm, f"{path}: key 'payload'")
     units = file.units
     return StatedVolume(
         path=path,

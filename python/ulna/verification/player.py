@@ -49,6 +49,7 @@ def play(
     encoder_rad: standard deviation of each encoder; touch_mm: of a touch, per coordinate. Elbow and wrist are drawn at
     random for each touch, whatever orientation the list asks for.
     """
+    truth.check_turns("test plan", "test plans")
     if len(truth.probes) != 1:
         raise UlnaInputError(
             f"arm '{truth.name}' has {len(truth.probes)} probes; expected one to play a plan with. Remove the others."

@@ -73,13 +73,24 @@ def _document(path: Path, above: list[Path]) -> tuple[dict[str, Any], str]:
         return document, sha256
     under, _ = _document(_path(base, path.parent, f"{path}: key 'based_on'"), [*above, path.resolve()])
     merged = _merged(under, document)
-    for name in document.get("without") or []:
+    tests = merged.get("test")
+    without = document.get("without", [])
+    if not (isinstance(without, list) and all(isinstance(name, str) for name in without)):
+        raise UlnaInputError(
+            f"{path}: key 'without': got {str(without)[:60]}, expected a list of names of tests of '{base}'. Correct "
+            "it."
+        )
+    if not isinstance(tests, dict):
+        if not without:
+            return merged, sha256
+        raise UlnaInputError(f"{path}: key 'test': got {str(tests)[:60]}, expected tables [test.NAME]. Correct it.")
+    for name in without:
         if name not in under.get("test", {}):
             raise UlnaInputError(
-                f"{path}: key 'without': got '{name}', no test of '{base}'.{nearest(str(name), under.get('test', {}))} "
+                f"{path}: key 'without': got '{name}', no test of '{base}'.{nearest(name, under.get('test', {}))} "
                 "Correct it."
             )
-        merged["test"].pop(name, None)
+        tests.pop(name, None)
     return merged, sha256
 
 

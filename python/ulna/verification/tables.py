@@ -47,6 +47,8 @@ class VerifyReadings(TableKeys):
     """Unit of encoder angles; the file's angle unit where it is not given."""
     probe: str | None = None
     """Of encoder readings: which probe was on."""
+    payload: str | None = None
+    """Of encoder readings: what was carried, the name of a [payload] of the arm, or "none"."""
     test: str | None = None
     """Which test of the profile."""
     artefact: str | None = None

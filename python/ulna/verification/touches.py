@@ -11,6 +11,7 @@ import numpy as np
 import polars as pl
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import CONDITIONS
 from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.own_units import LENGTHS, LENGTHS_STATED, check_units
@@ -22,6 +23,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.study.readings.checks import check_scale, remark_limits
 from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, codes, each_row, is_numeric, known_columns
 from ulna.study.readings.conditions import is_condition, said_of
+from ulna.study.readings.payloads import carried_in
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.verification.tables import VerifyReadings
 
@@ -127,14 +129,17 @@ def read_touches(
     ]
     frame = _filled(header, needed)
     row = np.arange(1, len(frame) + 1)
-    reading = ReadingsEntry(file=entry.file, angle=entry.angle, probe=entry.probe)
+    reading = ReadingsEntry(file=entry.file, angle=entry.angle, probe=entry.probe, payload=entry.payload)
     source = Source(setting.path, key, reading, 0, arm_file)
     factors = angle_factors(source, arm, setting.units)
     q_rad = angles(frame, "q", factors)
     check_scale(q_rad, "q", arm, factors, entry.angle or setting.units.angle, header, row)
     probe = each_row(codes(frame, header, source, "probe", list(arm.probes), f"arm '{arm.name}'", row), len(row))
-    said: dict[str, Any] = {"temperature_c": setting.temperature_c, **said_of(frame, arm.n, header, row)}
-    conditions = arm.conditions(len(row), said["temperature_c"], said.get("approach"))
+    said: dict[str, Any] = said_of(frame, arm.n, header, row) | carried_in(frame, header, source, arm, row)
+    said = {each.said: said.get(each.said) for each in CONDITIONS}
+    if said["temperature_c"] is None:
+        said["temperature_c"] = setting.temperature_c
+    conditions = arm.conditions(len(row), **said)
     balls = np.array([np.nan if each.ball_mm is None else each.ball_mm for each in arm.probes.values()])
     _remark_repeats(q_rad, header, remarks)
     remark_limits(q_rad, row, "q", arm, path, remarks)
@@ -150,7 +155,7 @@ def _coordinates(header: Header, entry: VerifyReadings, setting: Setting, remark
             "expected x, y, z, or the encoder columns q1, q2, …. Map the file's columns with the key 'columns', or "
             "correct the header."
         )
-    for key in ("angle", "probe", "arm"):
+    for key in ("angle", "probe", "payload", "arm"):
         if getattr(entry, key) is not None:
             raise UlnaInputError(
                 f"{setting.path}: key 'readings.{key}': {header.path} holds coordinates; expected it with encoder "

@@ -14,6 +14,8 @@ pub struct Arm {
     bare_last: Option<f64>,
     probes: Vec<Probe>,
     effects: Effects,
+    /// of each encoder whose joint slides along its axis and does not turn: how far at the most, mm
+    slides_mm: Vec<Option<f64>>,
 }
 
 impl Arm {
@@ -22,7 +24,8 @@ impl Arm {
     /// # Errors
     /// No joint before the last, no probe, a sign that is not ±1, or a number that is not finite.
     pub fn new(joints: Vec<Joint>, last_sign: f64, probes: Vec<Probe>) -> Result<Arm> {
-        Arm { joints, bare_last: Some(last_sign), probes, effects: Effects::default() }.checked()
+        let slides_mm = vec![None; joints.len() + 1];
+        Arm { joints, bare_last: Some(last_sign), probes, effects: Effects::default(), slides_mm }.checked()
     }
 
     /// An arm of `joints.len()` encoders whose last joint has a link of its own, to which the probes are fixed: four
@@ -31,7 +34,8 @@ impl Arm {
     /// # Errors
     /// As [`Arm::new`].
     pub fn with_full_last_link(joints: Vec<Joint>, probes: Vec<Probe>) -> Result<Arm> {
-        Arm { joints, bare_last: None, probes, effects: Effects::default() }.checked()
+        let slides_mm = vec![None; joints.len()];
+        Arm { joints, bare_last: None, probes, effects: Effects::default(), slides_mm }.checked()
     }
 
     /// The same arm with other effects beyond its geometry.
@@ -40,6 +44,52 @@ impl Arm {
     /// Another number of joints in them, or a number that is not finite.
     pub fn with_effects(&self, effects: Effects) -> Result<Arm> {
         Arm { effects, ..self.clone() }.checked()
+    }
+
+    /// The same arm with joints that slide along their axes and do not turn: of each encoder, how far from its zero at
+    /// the most, mm; none of those that turn. The readings of such an encoder are mm, and its joint stands in
+    /// `Rz(-theta0) · Tz(d + sign q) · Tx(a) · Rx(alpha)`.
+    ///
+    /// # Errors
+    /// Another count, a joint of Hayati among them, a travel that is no positive number, or a coupling with one.
+    pub fn with_slides(&self, slides_mm: &[Option<f64>]) -> Result<Arm> {
+        if slides_mm.len() != self.encoders() {
+            let what = "the joints that slide".into();
+            return Err(Error::Shape { what, got: slides_mm.len(), expected: self.encoders() });
+        }
+        Arm { slides_mm: slides_mm.to_vec(), ..self.clone() }.checked()
+    }
+
+    fn checked_slides(&self) -> Result<()> {
+        for (i, most_mm) in self.slides_mm.iter().enumerate() {
+            let Some(value) = *most_mm else { continue };
+            let refused = |expected: &'static str| {
+                let what = format!("the travel of joint {}, mm,", i + 1);
+                Err(Error::OutOfRange { what, value, expected })
+            };
+            if !(value > 0.0 && value.is_finite()) {
+                return refused("a positive number");
+            }
+            if self.joints.get(i).is_some_and(|joint| joint.model == JointModel::Hayati) {
+                return refused("none of a Hayati joint, which turns");
+            }
+            let coupling = self.effects.coupling.as_ref();
+            let coupled = |(one, other, _): (usize, usize, f64)| one == i || other == i;
+            if coupling.is_some_and(|coupling| coupling.pairs().any(coupled)) {
+                return refused("none of a coupled joint, which turns");
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a joint slides along its axis and does not turn.
+    pub fn slides(&self, encoder: usize) -> bool {
+        self.slides_mm[encoder].is_some()
+    }
+
+    /// Whether any does: then its readings know a length, and the arm is told from its mirror image.
+    pub fn any_slides(&self) -> bool {
+        self.slides_mm.iter().any(Option::is_some)
     }
 
     fn checked(self) -> Result<Arm> {
@@ -59,6 +109,7 @@ impl Arm {
             }
         }
         self.effects.check(self.encoders())?;
+        self.checked_slides()?;
         for (name, value) in self.parameter_names().into_iter().zip(self.parameters()) {
             if !value.is_finite() {
                 return Err(Error::NotFinite { what: name, value });
@@ -234,11 +285,12 @@ impl Arm {
         self.effect_of(parameter).map(|(effect, value)| effect.joint_of(value))
     }
 
-    /// Sum of the lengths of all links and the tip, mm: nothing is farther from the base.
+    /// Sum of the lengths of all links, of what slides and of the tip, mm: nothing is farther from the base.
     pub fn reach_mm(&self, probe: usize) -> f64 {
         let links: f64 = self.joints.iter().map(|j| j.a_mm.hypot(j.d_mm)).sum();
         let beside = self.effects.base_offset.as_ref().map_or(0.0, |base| base.mm[0].hypot(base.mm[1]));
-        beside + links + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
+        let slides: f64 = self.slides_mm.iter().flatten().sum();
+        beside + links + slides + self.probes[probe].tip_mm.iter().map(|t| t * t).sum::<f64>().sqrt()
     }
 }
 

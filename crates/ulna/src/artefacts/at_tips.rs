@@ -57,15 +57,19 @@ impl AtTips {
         Vector3::new(self.p_mm[0][i], self.p_mm[1][i], self.p_mm[2][i])
     }
 
-    /// Covariance of a tip for the encoders' noise, and for `variance` in every direction. Where the stated noise leaves a
-    /// direction without any, the direction gets a millionth of the others' variance: a weight must stay finite.
+    /// Covariance of a tip for the encoders' noise, and for `variance` in every direction.
     pub fn covariance(&self, i: usize, variance: f64) -> Matrix3<f64> {
         let at = |k: usize| self.sigma[k][i];
-        let sigma = Matrix3::new(at(0), at(1), at(3), at(1), at(2), at(4), at(3), at(4), at(5));
-        let trace = sigma.trace() + 3.0 * variance;
-        let floor = if trace > 0.0 { 1e-6 * trace / 3.0 } else { 1.0 };
-        sigma + Matrix3::from_diagonal_element(variance + floor)
+        with_its_own(&Matrix3::new(at(0), at(1), at(3), at(1), at(2), at(4), at(3), at(4), at(5)), variance)
     }
+}
+
+/// A covariance for the encoders' noise, and for `variance` in every direction. Where the stated noise leaves a direction
+/// without any, the direction gets a millionth of the others' variance: a weight must stay finite.
+pub(super) fn with_its_own(sigma: &Matrix3<f64>, variance: f64) -> Matrix3<f64> {
+    let trace = sigma.trace() + 3.0 * variance;
+    let floor = if trace > 0.0 { 1e-6 * trace / 3.0 } else { 1.0 };
+    sigma + Matrix3::from_diagonal_element(variance + floor)
 }
 
 /// Lower triangle of `L⁻¹` with `Σ = L Lᵀ`, row by row.

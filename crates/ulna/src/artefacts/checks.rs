@@ -22,9 +22,19 @@ pub(super) fn check_rows(rows: &Rows, arm: &Arm) -> Result<()> {
         ("the features touched", rows.feature.map(<[_]>::len)),
         ("the placement labels", rows.placement.map(<[_]>::len)),
         ("what was measured", rows.measured_mm.map(<[_]>::len)),
+        ("the orientations measured", rows.rotation_rad.map(<[_]>::len)),
+        ("the orientations' uncertainties", rows.rotation_u_rad.map(<[_]>::len)),
     ];
     for (what, got) in lengths {
         check_count(what, got.unwrap_or(count), count)?;
+    }
+    let turned = rows.rotation_rad.unwrap_or_default().as_flattened();
+    if let Some(&value) = turned.iter().find(|value| !value.is_finite()) {
+        return Err(Error::NotFinite { what: "an orientation measured".into(), value });
+    }
+    if let Some(&value) = rows.rotation_u_rad.unwrap_or_default().iter().find(|u| !(**u >= 0.0 && u.is_finite())) {
+        let what = "the uncertainty of an orientation, rad,".into();
+        return Err(Error::OutOfRange { what, value, expected: "a number not below zero" });
     }
     let measured = rows.measured_mm.unwrap_or_default();
     measured.iter().try_for_each(|&value| check_within("a measured length, mm,", value, (-MOST_MM, MOST_MM)))

@@ -27,9 +27,13 @@ impl Dimension {
         if self.unit == Unit::Mm { 1.0 } else { reach_mm }
     }
 
-    /// How well it is known before any reading, where lengths are known so well.
-    pub fn known(&self, length_mm: f64) -> f64 {
-        if self.unit == Unit::Mm { length_mm } else { SCALE }
+    /// How well it is known before any reading, where lengths and angles are known so well.
+    pub fn known(&self, length_mm: f64, angle_rad: f64) -> f64 {
+        match self.unit {
+            Unit::Mm => length_mm,
+            Unit::Rad => angle_rad,
+            _ => SCALE,
+        }
     }
 
     /// Whether it is an unknown of which nothing is known.

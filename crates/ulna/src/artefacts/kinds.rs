@@ -3,6 +3,7 @@
 mod cylinder;
 mod distance;
 mod length;
+mod orientation;
 mod plane;
 mod points;
 mod sphere;
@@ -14,7 +15,8 @@ use crate::arm::Arm;
 use crate::error::{Error, Result};
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[points::KIND, length::KIND, sphere::KIND, plane::KIND, cylinder::KIND, distance::KIND];
+pub const KINDS: &[Kind] =
+    &[points::KIND, length::KIND, sphere::KIND, plane::KIND, cylinder::KIND, distance::KIND, orientation::KIND];
 
 /// Dimensions of one artefact that are carried through a fit as columns of their own.
 const MOST_DIMENSIONS: usize = 1500;

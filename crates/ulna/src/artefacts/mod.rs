@@ -27,6 +27,7 @@ mod stated;
 mod surface;
 mod tile;
 mod touches;
+mod whitening;
 mod writer;
 
 pub(crate) use checks::{LEAST_NOISE, MOST_MM};

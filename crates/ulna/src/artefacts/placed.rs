@@ -36,6 +36,11 @@ pub(super) trait Observed<const C: usize>: std::fmt::Debug + Clone + Send + Sync
     /// See [`Readings::scale_free`].
     fn scale_free(&self, group: &Group) -> bool;
 
+    /// See [`Readings::tell_places`].
+    fn tell_places(&self) -> bool {
+        true
+    }
+
     /// See [`Readings::growing`].
     fn growing(&self, group: &Group, at: At) -> Vec<f64>;
 
@@ -54,9 +59,9 @@ pub(super) trait Observed<const C: usize>: std::fmt::Debug + Clone + Send + Sync
     /// Root of the weight of a touch, equal in effect where it differs by direction, 1/mm.
     fn weight(&self, row: usize) -> f64;
 
-    /// Variance of a touch that is neither the seat's nor the encoders', mm².
-    fn of_its_own(&self, _: &Group, _: usize) -> f64 {
-        0.0
+    /// Variance of a touch that is not the encoders', mm² in each direction.
+    fn variance_mm2(&self, _: &Group, _: usize, noise: &Noise) -> f64 {
+        noise.seat_mm.powi(2)
     }
 
     /// Takes dimensions that were calibrated anew: `group` has those that they were before.
@@ -87,7 +92,7 @@ pub(super) trait Scene<const C: usize> {
     /// Unknowns of a standing: columns of its own.
     fn unknowns(&self, standing: usize) -> usize;
 
-    /// How far the tip is off, base frame, mm.
+    /// How far the tip is off, base frame, mm: of an orientation, the turn times the lever.
     fn off_mm(&self, standing: usize, row: usize) -> Vector3<f64>;
 
     /// A residual as a person reads it, mm.
@@ -145,6 +150,10 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
 
     fn scale_free(&self) -> bool {
         self.kind.scale_free(&self.group)
+    }
+
+    fn tell_places(&self) -> bool {
+        self.kind.tell_places()
     }
 
     fn growing(&self, at: At) -> Vec<f64> {
@@ -293,10 +302,10 @@ impl<K: Observed<C>, const C: usize> Readings for Placed<K, C> {
         let scene = self.kind.scene(&self.group, truth);
         let mut off = Vec::with_capacity(self.len());
         for (standing, rows) in self.group.touches.standings.iter().enumerate() {
-            off.extend(rows.clone().map(|row| {
-                let variance = noise.seat_mm.powi(2) + self.kind.of_its_own(&self.group, row);
-                (scene.off_mm(standing, row), variance.sqrt())
-            }));
+            off.extend(
+                rows.clone()
+                    .map(|row| (scene.off_mm(standing, row), self.kind.variance_mm2(&self.group, row, noise).sqrt())),
+            );
         }
         drawn.group.touches.redraw(off.into_iter(), &noise.encoder_rad, rng);
         Box::new(drawn)

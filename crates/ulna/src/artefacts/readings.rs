@@ -44,6 +44,11 @@ pub trait Readings: Debug + Send + Sync {
     /// Whether scaling the arm, and with it what [`Readings::growing`] says, scales every residual: no length is known.
     fn scale_free(&self) -> bool;
 
+    /// Whether any of them tells where the tip is: orientations do not.
+    fn tell_places(&self) -> bool {
+        true
+    }
+
     /// How fast each dimension grows with the arm where no length is known.
     fn growing(&self, at: At) -> Vec<f64> {
         vec![0.0; at.dimensions.len()]

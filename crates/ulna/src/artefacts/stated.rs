@@ -62,6 +62,10 @@ pub struct Rows<'a> {
     pub placement: Option<&'a [i64]>,
     /// What an instrument or a calibration says of each row, mm.
     pub measured_mm: Option<&'a [f64]>,
+    /// How an instrument says that the target was turned, a rotation vector in the instrument's frame, rad.
+    pub rotation_rad: Option<&'a [[f64; 3]]>,
+    /// Standard uncertainty of that about each axis, rad.
+    pub rotation_u_rad: Option<&'a [f64]>,
 }
 
 /// A part of what can be stated, by the name that the skin gives it.
@@ -89,11 +93,15 @@ pub enum Column {
     Placement,
     /// `measured_mm`
     Measured,
+    /// `rotation_rad`
+    Rotation,
+    /// `rotation_u_rad`
+    RotationUncertainty,
 }
 
 impl Column {
     /// All of them.
-    pub const ALL: [Column; 11] = [
+    pub const ALL: [Column; 13] = [
         Column::Features,
         Column::Labels,
         Column::FeatureUncertainty,
@@ -105,6 +113,8 @@ impl Column {
         Column::Feature,
         Column::Placement,
         Column::Measured,
+        Column::Rotation,
+        Column::RotationUncertainty,
     ];
 
     /// Its name.
@@ -121,6 +131,8 @@ impl Column {
             Column::Feature => "feature",
             Column::Placement => "placement",
             Column::Measured => "measured_mm",
+            Column::Rotation => "rotation_rad",
+            Column::RotationUncertainty => "rotation_u_rad",
         }
     }
 
@@ -138,6 +150,8 @@ impl Column {
             Column::Feature => rows.feature.is_some(),
             Column::Placement => rows.placement.is_some(),
             Column::Measured => rows.measured_mm.is_some(),
+            Column::Rotation => rows.rotation_rad.is_some(),
+            Column::RotationUncertainty => rows.rotation_u_rad.is_some(),
         }
     }
 }

@@ -250,7 +250,7 @@ impl Directions for Normals {
     const COUNT: usize = 1;
 
     #[inline(always)]
-    fn direction<S: Simd>(&self, simd: S, _: usize, k: usize) -> [Lanes<S>; 3] {
+    fn direction<S: Simd>(&self, simd: S, _: usize, _: usize, k: usize) -> [Lanes<S>; 3] {
         [0, 1, 2].map(|j| self.0.load(simd, j, k))
     }
 }

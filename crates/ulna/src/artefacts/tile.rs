@@ -15,16 +15,21 @@ pub(super) trait Directions {
     /// How many.
     const COUNT: usize;
 
-    /// Number `component` for vector `k` of readings.
-    fn direction<S: Simd>(&self, simd: S, component: usize, k: usize) -> [Lanes<S>; 3];
+    /// The points that move, from the tip, in the probe's frame, mm: the derivatives along the directions of all of them
+    /// are added up. The tip alone tells where it is; three points tell how the last link is turned.
+    const POINTS_MM: &'static [[f64; 3]] = &[[0.0; 3]];
+
+    /// Number `component` at a point for vector `k` of readings.
+    fn direction<S: Simd>(&self, simd: S, point: usize, component: usize, k: usize) -> [Lanes<S>; 3];
 }
 
 impl<D: Directions> Directions for &D {
     const COUNT: usize = D::COUNT;
+    const POINTS_MM: &'static [[f64; 3]] = D::POINTS_MM;
 
     #[inline(always)]
-    fn direction<S: Simd>(&self, simd: S, component: usize, k: usize) -> [Lanes<S>; 3] {
-        (**self).direction(simd, component, k)
+    fn direction<S: Simd>(&self, simd: S, point: usize, component: usize, k: usize) -> [Lanes<S>; 3] {
+        (**self).direction(simd, point, component, k)
     }
 }
 
@@ -79,20 +84,26 @@ impl<D: Directions> WithSimd for TileOp<'_, D> {
         let columns = self.tile.columns;
         for v in 0..rows / S::F64_LANES {
             let k = self.start / S::F64_LANES + v;
-            let tip = [0, 1, 2].map(|j| self.tile.tips.load(simd, j, k));
-            forward(simd, self.chain, self.poses, k, tip, self.scratch);
-            for component in 0..D::COUNT {
-                let direction = self.directions.direction(simd, component, k);
-                gradient(
-                    simd,
-                    self.chain,
-                    self.scratch,
-                    direction,
-                    #[inline(always)]
-                    |column, value| {
-                        self.tile.values.store(component * columns + column, v, value);
-                    },
-                );
+            for (point, from_tip) in D::POINTS_MM.iter().enumerate() {
+                let at = |j: usize| self.tile.tips.load(simd, j, k) + Lanes::splat(simd, from_tip[j]);
+                let tip = [at(0), at(1), at(2)];
+                forward(simd, self.chain, self.poses, k, tip, self.scratch);
+                for component in 0..D::COUNT {
+                    let direction = self.directions.direction(simd, point, component, k);
+                    let values = &mut self.tile.values;
+                    gradient(
+                        simd,
+                        self.chain,
+                        self.scratch,
+                        direction,
+                        #[inline(always)]
+                        |column, value| {
+                            let column = component * columns + column;
+                            let before = if point == 0 { None } else { Some(values.load(simd, column, v)) };
+                            values.store(column, v, before.map_or(value, |before| before + value));
+                        },
+                    );
+                }
             }
         }
     }

@@ -44,10 +44,26 @@ impl Touches {
         self.order.len()
     }
 
+    /// Points of the last link where each touch was taken, so far from the tip in the probe's frame: base frame, mm.
+    pub fn points(&self, model: &Model, from_tip_mm: [f64; 3]) -> Columns {
+        let mut places = self.tip_of_each(model);
+        for (j, &away) in from_tip_mm.iter().enumerate() {
+            places.column_mut(j).iter_mut().for_each(|value| *value += away);
+        }
+        let mut p = Columns::zeros(3, self.len());
+        tips_mm(&model.chain, &self.poses, &places, &mut p);
+        p
+    }
+
+    /// What a touch is off by for reasons of its own, base frame, mm.
+    pub fn offset_mm(&self, row: usize) -> Vector3<f64> {
+        let Some(offset) = &self.offset_mm else { return Vector3::zeros() };
+        Vector3::from([0, 1, 2].map(|j| offset.column(j)[row]))
+    }
+
     /// Tips of all touches, base frame, mm.
     pub fn tips(&self, model: &Model) -> Columns {
-        let mut p = Columns::zeros(3, self.len());
-        tips_mm(&model.chain, &self.poses, &self.tip_of_each(model), &mut p);
+        let mut p = self.points(model, [0.0; 3]);
         if let Some(offset) = &self.offset_mm {
             for j in 0..3 {
                 p.column_mut(j).iter_mut().zip(offset.column(j)).for_each(|(value, off)| *value -= off);

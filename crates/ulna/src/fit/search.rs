@@ -265,7 +265,9 @@ fn mobility(problem: &Problem, parameters: &[f64]) -> f64 {
 
 /// Whether a parameter is the zero offset of a joint: what a search throws.
 pub(crate) fn is_zero_offset(problem: &Problem, parameter: usize) -> bool {
-    parameter < problem.arm().joint_parameter_count() && parameter.is_multiple_of(4)
+    let arm = problem.arm();
+    // of a joint that slides it is a twist, as a drawing tells it
+    parameter < arm.joint_parameter_count() && parameter.is_multiple_of(4) && !arm.slides(parameter / 4)
 }
 
 /// Chi² per degree of freedom up to which the stated noise explains what is left.

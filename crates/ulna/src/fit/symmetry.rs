@@ -142,7 +142,7 @@ pub(crate) struct Distance<'a> {
 impl<'a> Distance<'a> {
     pub fn new(arm: &Arm, nominal: &'a [f64], freedom: Freedom) -> Distance<'a> {
         let reach = (0..arm.probes().len()).map(|p| arm.reach_mm(p)).fold(f64::MIN_POSITIVE, f64::max);
-        let zero_offset = |j: usize| j < arm.joint_parameter_count() && j.is_multiple_of(4);
+        let zero_offset = |j: usize| j < arm.joint_parameter_count() && j.is_multiple_of(4) && !arm.slides(j / 4);
         let matters = |j: usize| {
             let base = freedom.base_free && matters_not(arm, j);
             !(base || freedom.zero_offsets_unknown && zero_offset(j))

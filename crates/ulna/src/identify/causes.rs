@@ -1,6 +1,6 @@
 //! Why a direction is lost, found by looking at what it does to the tip.
 
-use crate::arm::{Arm, JointModel, Lost, Seen};
+use crate::arm::{Arm, JointModel, Lost, Seen, Unit};
 use crate::kinematics::{Sample, jacobian, tip_mm};
 use crate::problem::Problem;
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -22,6 +22,8 @@ pub enum Cause {
     ParallelAxes,
     /// The last link and the tip say the same thing twice.
     RedundantLink,
+    /// Of an axis along which a joint slides only the direction matters.
+    SlidingAxis,
     /// An effect had no chance to show: one of its own words.
     OfEffect(&'static str),
     /// It moves the tip, but not in what was read.
@@ -39,6 +41,7 @@ impl Cause {
             Cause::JointStill => "joint-still",
             Cause::ParallelAxes => "parallel-axes",
             Cause::RedundantLink => "redundant-link",
+            Cause::SlidingAxis => "sliding-axis",
             Cause::OfEffect(cause) => cause,
             Cause::Coverage => "coverage",
         }
@@ -77,13 +80,16 @@ pub(crate) struct Scene<'a> {
     natural_scale: Vec<f64>,
     /// parameters that only move the base frame
     base: Vec<usize>,
+    /// whether any reading tells where the tip is
+    tells_places: bool,
 }
 
 impl<'a> Scene<'a> {
     pub fn new(problem: &Problem, arm: &'a Arm, free: &'a [usize], poses: &'a [Sample]) -> Scene<'a> {
         let (probes_used, seen) = (problem.probes_used(), problem.seen());
         let (natural_scale, base) = (problem.natural_scale(), problem.base_parameters());
-        Scene { arm, free, poses, probes_used, seen, natural_scale, base }
+        let tells_places = problem.tells_places();
+        Scene { arm, free, poses, probes_used, seen, natural_scale, base, tells_places }
     }
 
     /// Whether every tip that was read with lies on the last axis.
@@ -127,6 +133,10 @@ pub(crate) fn explain(direction: &[f64], arm: &Arm, scene: &Scene) -> Because {
     // a base that grows with the temperature moves by next to nothing more in the warm than in the cold
     if takes_part.iter().all(|j| scene.base.contains(j)) {
         return base_frame();
+    }
+    let units = arm.parameter_units();
+    if !scene.tells_places && takes_part.iter().all(|&j| units.get(j) == Some(&Unit::Mm)) {
+        return no_places();
     }
     if let Some(because) = of_effects(&takes_part, scene) {
         return because;
@@ -202,6 +212,15 @@ pub(crate) fn scale() -> Because {
     }
 }
 
+/// What is said of lengths where only orientations were read.
+fn no_places() -> Because {
+    Because {
+        cause: Cause::Scale,
+        because: "only orientations were read: they tell no length of the arm".into(),
+        remedy: "add readings of places: points of the same tracker, a bar, a seat; or hold the lengths".into(),
+    }
+}
+
 fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene) -> Option<Because> {
     if motion.size > EXPLAINED * motion.effort && motion.size > VANISHED * motion.most {
         return None;
@@ -229,6 +248,9 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
             remedy: "measure with a probe at least 10 mm off the last axis, or with a second straight probe of another length".into(),
         });
     }
+    if let Some(because) = sliding_axis(takes_part, arm) {
+        return Some(because);
+    }
     for (i, joint) in arm.joints().iter().enumerate() {
         let parallel = joint.model == JointModel::Dh && joint.alpha_rad.sin().abs() < PARALLEL_RAD;
         if parallel && takes_part.contains(&(4 * i + 3)) {
@@ -253,8 +275,37 @@ fn moves_nothing(motion: &Motion, takes_part: &[usize], arm: &Arm, scene: &Scene
     })
 }
 
+/// What is said where parameters around a joint that slides move nothing together.
+fn sliding_axis(takes_part: &[usize], arm: &Arm) -> Option<Because> {
+    let (last, geometry) = (arm.encoders() - 1, arm.geometry_count());
+    let around = |i: usize| {
+        // joints that slide one after the other, and the links at both ends of them
+        let slides = |&k: &usize| arm.slides(k);
+        let from = (0..i).rev().take_while(slides).last().unwrap_or(i).saturating_sub(1);
+        let to = (i..=last).take_while(slides).last().unwrap_or(i) + 1;
+        takes_part.iter().all(|&j| match arm.joint_of(j) {
+            Some(joint) => j < geometry && (from..=to).contains(&joint),
+            // the tip stands for the last joint's link
+            None => j < geometry && last <= to,
+        })
+    };
+    let i = (0..=last).find(|&i| arm.slides(i) && around(i))?;
+    let name = i + 1;
+    Some(Because {
+        cause: Cause::SlidingAxis,
+        because: format!(
+            "joint {name} slides: of such an axis only the direction matters, and where it lies is said by the links beside it \
+             as well"
+        ),
+        remedy: "none is needed, no point depends on it; or hold one of these parameters".into(),
+    })
+}
+
 /// Whether a probe's tip does not move when the last joint turns.
 fn on_last_axis(arm: &Arm, probe: usize) -> bool {
+    if arm.slides(arm.encoders() - 1) {
+        return false;
+    }
     let tip = Vector3::from(arm.probes()[probe].tip_mm);
     let q_rad: Vec<f64> = vec![0.0; arm.encoders()];
     let frames = crate::kinematics::frames(arm, &q_rad);

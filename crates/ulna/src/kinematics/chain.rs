@@ -21,6 +21,8 @@ pub(crate) struct Link {
     pub(crate) beta: Option<(f64, f64)>,
     /// a last joint that only turns the tip
     pub(crate) bare: bool,
+    /// it slides along its axis and does not turn
+    pub(crate) slides: bool,
 }
 
 /// An arm's geometry with its sines and cosines taken, ready for the kernels.
@@ -82,7 +84,7 @@ impl EffectColumns {
 impl Chain {
     /// The chain of an arm, its probes left out.
     pub fn new(arm: &Arm) -> Chain {
-        let links = arm.joints().iter().map(|j| Link {
+        let links = arm.joints().iter().enumerate().map(|(i, j)| Link {
             theta0: j.theta0_rad,
             sign: j.sign,
             cos_theta0: j.theta0_rad.cos(),
@@ -93,6 +95,7 @@ impl Chain {
             d: if j.model == JointModel::Dh { j.d_mm } else { 0.0 },
             beta: (j.model == JointModel::Hayati).then(|| (j.beta_rad.cos(), j.beta_rad.sin())),
             bare: false,
+            slides: arm.slides(i),
         });
         let bare = Link {
             theta0: 0.0,
@@ -105,6 +108,7 @@ impl Chain {
             d: 0.0,
             beta: None,
             bare: true,
+            slides: arm.slides(arm.encoders() - 1),
         };
         Chain {
             links: links.chain((!arm.has_full_last_link()).then_some(bare)).collect(),
@@ -152,14 +156,19 @@ impl Chain {
         self.joint_parameter_count() + 3
     }
 
-    /// The column behind them: the derivative with respect to the last joint's turn.
+    /// The column behind them: the derivative with respect to what the last joint does, its turn or its shift.
     pub fn turn_column(&self) -> usize {
         self.parameter_columns()
     }
 
     /// The column that says how the tip follows an encoder, but for the sign.
     pub(crate) fn encoder_column(&self, encoder: usize) -> usize {
-        if 4 * encoder < self.joint_parameter_count() { 4 * encoder } else { self.turn_column() }
+        match 4 * encoder {
+            first if first >= self.joint_parameter_count() => self.turn_column(),
+            // what slides moves the tip as its d does
+            first if self.links[encoder].slides => first + 3,
+            first => first,
+        }
     }
 
     /// How the tip follows every encoder, from how it follows every turn, in place: a number for each encoder as in its
@@ -191,7 +200,7 @@ impl Chain {
     pub(crate) fn encoder_of(&self, column: usize) -> Option<usize> {
         let joints = self.joint_parameter_count();
         match column {
-            c if c < joints && c % 4 == 0 => Some(c / 4),
+            c if c < joints => (c == self.encoder_column(c / 4)).then_some(c / 4),
             c if c == self.turn_column() && joints < 4 * self.links.len() => Some(self.links.len() - 1),
             _ => None,
         }

@@ -1,6 +1,6 @@
 //! What was true at poses beside the angles of the encoders, as far as an arm's effects ask for it.
 
-use crate::arm::effects::Seen;
+use crate::arm::effects::{Seen, check_mass};
 use crate::error::{Error, Result};
 use crate::simd::{Columns, Lanes};
 use pulp::Simd;
@@ -14,7 +14,13 @@ pub struct Conditions<'a> {
     /// From which side each joint was approached, row-major one for each: +1 where the angle of its encoder had been
     /// rising, -1 where it had been falling, 0 where nobody knows; empty where nobody knows of any.
     pub approach: &'a [f64],
+    /// What the last joint carried beside the arm's own masses, row-major [`PAYLOAD`] numbers a pose: mass, kg, and where
+    /// its centre is in the probe's frame, x, y, z, mm; empty where it carried nothing.
+    pub payload: &'a [f64],
 }
+
+/// Numbers of a payload.
+pub const PAYLOAD: usize = 4;
 
 impl<'a> Conditions<'a> {
     /// Those of some of so many poses.
@@ -23,17 +29,18 @@ impl<'a> Conditions<'a> {
             let width = values.len().checked_div(of).unwrap_or(0);
             &values[rows.start * width..rows.end * width]
         };
-        Conditions { warmth_k: part(self.warmth_k), approach: part(self.approach) }
+        Conditions { warmth_k: part(self.warmth_k), approach: part(self.approach), payload: part(self.payload) }
     }
 
     /// They are of so many poses and joints, and can be what they are said to be.
     ///
     /// # Errors
-    /// Another count, a temperature that is not finite, an approach other than -1, 0 or +1.
+    /// Another count, a temperature that is not finite, an approach other than -1, 0 or +1, a payload that no arm carries.
     pub fn check(self, what: &str, rows: usize, encoders: usize) -> Result<()> {
         let of = [
             ("temperatures", self.warmth_k, [0, rows, rows * encoders]),
             ("approaches", self.approach, [0, rows * encoders, rows * encoders]),
+            ("payloads", self.payload, [0, rows * PAYLOAD, rows * PAYLOAD]),
         ];
         for (name, values, lengths) in of {
             if !lengths.contains(&values.len()) {
@@ -43,6 +50,12 @@ impl<'a> Conditions<'a> {
         }
         if let Some(&value) = self.warmth_k.iter().find(|warmth| !warmth.is_finite()) {
             return Err(Error::NotFinite { what: format!("a temperature of the {what}"), value });
+        }
+        for carried in self.payload.chunks_exact(PAYLOAD) {
+            check_mass(carried[0], &format!("a payload of the {what}, kg,"))?;
+            if let Some(&value) = carried[1..].iter().find(|centre| !centre.is_finite()) {
+                return Err(Error::NotFinite { what: format!("the centre of a payload of the {what}"), value });
+            }
         }
         match self.approach.iter().find(|approach| ![-1.0, 0.0, 1.0].contains(*approach)) {
             Some(&value) => Err(Error::OutOfRange {
@@ -62,6 +75,8 @@ pub(super) struct Held {
     warmth_k: Option<Columns>,
     /// one column for each joint; none where nothing is known
     approach: Option<Columns>,
+    /// mass, kg, and x, y, z of its centre, mm; none where nothing is carried
+    payload: Option<Columns>,
 }
 
 impl Held {
@@ -73,7 +88,8 @@ impl Held {
             columns.fill_from_rows(values, width);
             Some(columns)
         };
-        Held { warmth_k: columns(given.warmth_k), approach: columns(given.approach) }
+        let payload = columns(given.payload);
+        Held { warmth_k: columns(given.warmth_k), approach: columns(given.approach), payload }
     }
 
     /// Of some of so many poses.
@@ -82,19 +98,23 @@ impl Held {
             let width = values.len().checked_div(of).filter(|&width| width > 0)?;
             Some(Columns::gathered(values, width, rows))
         };
-        Held { warmth_k: gather(given.warmth_k), approach: gather(given.approach) }
+        Held { warmth_k: gather(given.warmth_k), approach: gather(given.approach), payload: gather(given.payload) }
     }
 
     /// Some of these.
     pub fn picked(&self, rows: &[usize]) -> Held {
         let pick = |columns: &Columns| columns.picked(rows);
-        Held { warmth_k: self.warmth_k.as_ref().map(pick), approach: self.approach.as_ref().map(pick) }
+        Held {
+            warmth_k: self.warmth_k.as_ref().map(pick),
+            approach: self.approach.as_ref().map(pick),
+            payload: self.payload.as_ref().map(pick),
+        }
     }
 
-    /// Warmth and approach of one pose.
-    pub fn row(&self, row: usize) -> (Vec<f64>, Vec<f64>) {
+    /// Warmth, approach and payload of one pose.
+    pub fn row(&self, row: usize) -> [Vec<f64>; 3] {
         let of = |columns: &Columns| (0..columns.width()).map(|j| columns.column(j)[row]).collect();
-        (self.warmth_k.as_ref().map_or_else(Vec::new, of), self.approach.as_ref().map_or_else(Vec::new, of))
+        [&self.warmth_k, &self.approach, &self.payload].map(|held| held.as_ref().map_or_else(Vec::new, of))
     }
 
     /// What effects may see in them.
@@ -127,5 +147,11 @@ impl Held {
             None => Lanes::splat(simd, 0.0),
             Some(approach) => approach.load(simd, i, k),
         }
+    }
+
+    /// What vector `k` of poses carried: mass, kg, and x, y, z of its centre, mm; none where none of all poses carried any.
+    #[inline(always)]
+    pub fn payload<S: Simd>(&self, simd: S, k: usize) -> Option<[Lanes<S>; PAYLOAD]> {
+        self.payload.as_ref().map(|payload| [0, 1, 2, 3].map(|number| payload.load(simd, number, k)))
     }
 }

@@ -13,12 +13,13 @@ use nalgebra::{DVector, Matrix3, Point3, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a posture may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
-    /// Lowest and highest encoder angle of each joint, rad.
+    /// Lowest and highest encoder angle of each joint, rad; of one that slides mm.
     pub range_rad: Vec<(f64, f64)>,
 }
 
@@ -88,13 +89,17 @@ fn descend(
     mut q_rad: Vec<f64>,
 ) -> Option<Vec<f64>> {
     let mut damping = 1e-4;
+    // what slides goes as far in a step as what turns: its travel stands for half a turn
+    let unit = |(i, &(low, high)): (usize, &(f64, f64))| if arm.slides(i) { (high - low) / PI } else { 1.0 };
+    let units: Vec<f64> = limits.range_rad.iter().enumerate().map(unit).collect();
     let miss_of = |q_rad: &[f64]| point_mm - tip_mm(arm, probe, Pose { q_rad, conditions });
     let mut miss = miss_of(&q_rad);
     for _ in 0..STEPS {
         if miss.norm() <= REACHED_MM {
             return Some(q_rad);
         }
-        let jacobian = encoder_jacobian(arm, probe, Pose { q_rad: &q_rad, conditions });
+        let mut jacobian = encoder_jacobian(arm, probe, Pose { q_rad: &q_rad, conditions });
+        jacobian.column_iter_mut().zip(&units).for_each(|(mut column, unit)| column *= *unit);
         let square: Matrix3<f64> = &jacobian * jacobian.transpose();
         let damped = square + Matrix3::from_diagonal_element(damping * square.trace() / 3.0);
         let weights: Vector3<f64> = damped.cholesky()?.solve(&miss);
@@ -105,7 +110,8 @@ fn descend(
             .iter()
             .zip(step.iter())
             .zip(&limits.range_rad)
-            .map(|((q, s), &(low, high))| (q + shorten * s).clamp(low, high))
+            .zip(&units)
+            .map(|(((q, s), &(low, high)), unit)| (q + shorten * s * unit).clamp(low, high))
             .collect();
         let next_miss = miss_of(&next);
         if next_miss.norm() < miss.norm() {

@@ -20,7 +20,7 @@ mod pose;
 mod poses;
 
 pub use chain::Chain;
-pub use conditions::Conditions;
+pub use conditions::{Conditions, PAYLOAD};
 pub use plain::{encoder_jacobian, frames, jacobian, tip_mm};
 pub use pose::{Pose, Sample};
 pub use poses::{Angles, Poses};

@@ -1,17 +1,17 @@
 //! The forward map and its derivatives as the formula reads, one pose at a time: what the kernels must equal.
 
 use super::pose::Pose;
-use crate::arm::effects::{Base, BaseOffset, BaseTilt, Compliance, Expansion, FromStated};
+use crate::arm::effects::{Base, BaseOffset, BaseTilt, Body, Compliance, Expansion, FromStated};
 use crate::arm::{Arm, Joint, JointModel};
 use nalgebra::{Isometry3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3};
 
-/// `T_i`: from the frame after joint i to the frame before it, at a turn, its link stretched.
-fn step(joint: &Joint, turn_rad: f64, stretch: f64) -> Isometry3<f64> {
+/// `T_i`: from the frame after joint i to the frame before it, at a turn or a shift along its axis, its link stretched.
+fn step(joint: &Joint, (turn_rad, shift_mm): (f64, f64), stretch: f64) -> Isometry3<f64> {
     let rz = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn_rad);
     let rx = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), joint.alpha_rad);
     let a_mm = stretch * joint.a_mm;
     match joint.model {
-        JointModel::Dh => rz * Translation3::new(a_mm, 0.0, stretch * joint.d_mm) * rx,
+        JointModel::Dh => rz * Translation3::new(a_mm, 0.0, stretch * (joint.d_mm + shift_mm)) * rx,
         JointModel::Hayati => {
             let ry = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), joint.beta_rad);
             rz * Translation3::new(a_mm, 0.0, 0.0) * (rx * ry)
@@ -21,15 +21,23 @@ fn step(joint: &Joint, turn_rad: f64, stretch: f64) -> Isometry3<f64> {
 
 /// Frames `t_base_joint` of every joint before its turn and the probe's frame last, n + 1 frames, for given turns, the
 /// first at `t_base`.
-fn chained(arm: &Arm, mut t_base: Isometry3<f64>, turns_rad: &[f64], stretches: &[f64]) -> Vec<Isometry3<f64>> {
+/// shifts_mm: of joints that slide, how far; 0 of others.
+fn chained(
+    arm: &Arm,
+    mut t_base: Isometry3<f64>,
+    turns_rad: &[f64],
+    shifts_mm: &[f64],
+    stretches: &[f64],
+) -> Vec<Isometry3<f64>> {
     let mut all = vec![t_base];
-    for ((joint, &turn), &stretch) in arm.joints().iter().zip(turns_rad).zip(stretches) {
-        t_base *= step(joint, turn, stretch);
+    let last = turns_rad.len() - 1;
+    for (i, joint) in arm.joints().iter().enumerate() {
+        t_base *= step(joint, (turns_rad[i], shifts_mm[i]), stretches[i]);
         all.push(t_base);
     }
     if !arm.has_full_last_link() {
-        let roll = turns_rad.last().copied().unwrap_or(0.0);
-        all.push(t_base * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), roll));
+        let roll = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turns_rad[last]);
+        all.push(t_base * Translation3::new(0.0, 0.0, stretches[last] * shifts_mm[last]) * roll);
     }
     all
 }
@@ -40,6 +48,8 @@ struct Posed<'a> {
     pose: Pose<'a>,
     /// of each joint, rad
     turns_rad: Vec<f64>,
+    /// of each joint that slides, mm
+    shifts_mm: Vec<f64>,
     /// of each link, and of the tip with the last joint
     stretches: Vec<f64>,
     frames: Vec<Isometry3<f64>>,
@@ -58,9 +68,14 @@ impl<'a> Posed<'a> {
         };
         let theta0 = |i: usize| arm.joints().get(i).map_or(0.0, |joint| joint.theta0_rad);
         let signs: Vec<f64> = arm.signs().collect();
-        let rigid: Vec<f64> = (0..n).map(|i| signs[i] * pose.q_rad[i] - theta0(i)).collect();
-        let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, &rigid));
+        let read = |i: usize| signs[i] * pose.q_rad[i];
+        let shifts_mm: Vec<f64> = (0..n).map(|i| if arm.slides(i) { read(i) } else { 0.0 }).collect();
+        let rigid: Vec<f64> = (0..n).map(|i| if arm.slides(i) { -theta0(i) } else { read(i) - theta0(i) }).collect();
+        let weight = effects.compliance.as_ref().map(|_| Weight::new(arm, pose, &rigid, &shifts_mm));
         let turn = |i: usize| {
+            if arm.slides(i) {
+                return rigid[i];
+            }
             let added = signs[i] * effects.added_rad(i, pose.encoder(i));
             let given = weight.as_ref().map_or(0.0, |w| w.rad_per_nm(i) * w.moment_nm(i));
             rigid[i] + added + given
@@ -68,10 +83,10 @@ impl<'a> Posed<'a> {
         let turns_rad: Vec<f64> = (0..n).map(turn).collect();
         let base = Base::of(effects.base_tilt.as_ref(), effects.base_offset.as_ref());
         let t_base = base.map_or_else(Isometry3::identity, |base| base.pose());
-        let frames = chained(arm, t_base, &turns_rad, &stretches);
+        let frames = chained(arm, t_base, &turns_rad, &shifts_mm, &stretches);
         let tip_mm = Vector3::from(arm.probes()[probe].tip_mm) * stretches[n - 1];
         let p_tip = (frames[n] * Point3::from(tip_mm)).coords;
-        Posed { arm, pose, turns_rad, stretches, frames, p_tip, tip_mm, weight }
+        Posed { arm, pose, turns_rad, shifts_mm, stretches, frames, p_tip, tip_mm, weight }
     }
 
     fn axis(&self, i: usize) -> Vector3<f64> {
@@ -86,7 +101,8 @@ impl<'a> Posed<'a> {
     /// How the tip follows the moments where a parameter changes them by `moments_nm`.
     fn by_moments(&self, moments_nm: impl Fn(&Weight, usize) -> f64) -> Vector3<f64> {
         let Some(weight) = &self.weight else { return Vector3::zeros() };
-        (0..self.arm.encoders()).map(|i| self.by_turn(i) * (weight.rad_per_nm(i) * moments_nm(weight, i))).sum()
+        let given = |i: usize| self.by_turn(i) * (weight.rad_per_nm(i) * moments_nm(weight, i));
+        (0..self.arm.encoders()).filter(|&i| !self.arm.slides(i)).map(given).sum()
     }
 }
 
@@ -135,6 +151,8 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     for effect in effects.on_encoder() {
         for (i, sign) in arm.signs().enumerate() {
             for shape in effect.shapes(i, posed.pose.encoder(i)) {
+                // what slides has no encoder that turns
+                let shape = if arm.slides(i) { 0.0 } else { shape };
                 jacobian.set_column(at, &(posed.by_turn(i) * sign * shape));
                 at += 1;
             }
@@ -146,12 +164,15 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
             let turn = posed.turns_rad[i];
             posed.frames[i] * Vector3::new(joint.a_mm * turn.cos(), joint.a_mm * turn.sin(), joint.d_mm)
         });
+        let slid = posed.axis(i) * posed.shifts_mm[i];
         let tip = if i + 1 == n { posed.frames[n] * posed.tip_mm / posed.stretches[i] } else { Vector3::zeros() };
-        jacobian.set_column(first + i, &((link + tip) * posed.pose.warmth_k(i)));
+        jacobian.set_column(first + i, &((link + slid + tip) * posed.pose.warmth_k(i)));
     }
     let first = arm.geometry_count() + effects.start_of(Compliance::KIND);
     if let Some(weight) = &posed.weight {
-        (0..n).for_each(|i| jacobian.set_column(first + i, &(posed.by_turn(i) * weight.moment_nm(i))));
+        for i in (0..n).filter(|&i| !arm.slides(i)) {
+            jacobian.set_column(first + i, &(posed.by_turn(i) * weight.moment_nm(i)));
+        }
     }
     if let Some(tilt) = &effects.base_tilt {
         let first = arm.geometry_count() + effects.start_of(BaseTilt::KIND);
@@ -167,13 +188,17 @@ pub fn jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matri
     jacobian
 }
 
-/// ∂p/∂q of one pose, 3 × n, mm/rad.
+/// ∂p/∂q of one pose, 3 × n, mm/rad; of a joint that slides mm/mm.
 pub fn encoder_jacobian<'a>(arm: &Arm, probe: usize, pose: impl Into<Pose<'a>>) -> Matrix3xX<f64> {
     let posed = Posed::new(arm, probe, pose.into());
     // a moment follows the turn that the encoder says, without what is added to it
     let given = |i: usize| posed.by_moments(|weight, j| -weight.derivative_nm(j, i, 0));
     let signs: Vec<f64> = arm.signs().collect();
+    let slid = |i: usize| posed.by_moments(|weight, j| weight.derivative_nm(j, i, 3));
     let columns = signs.iter().enumerate().map(|(i, &sign)| {
+        if arm.slides(i) {
+            return sign * (posed.axis(i) * posed.stretches[i] + slid(i));
+        }
         let slope = arm.effects().slope(i, posed.pose.encoder(i));
         sign * (posed.by_turn(i) * (1.0 + slope) + given(i))
     });
@@ -197,10 +222,10 @@ struct Weight<'a> {
 }
 
 impl<'a> Weight<'a> {
-    fn new(arm: &'a Arm, turns_rad: &[f64]) -> Weight<'a> {
+    fn new(arm: &'a Arm, pose: Pose, turns_rad: &[f64], shifts_mm: &[f64]) -> Weight<'a> {
         let n = arm.encoders();
         // gravity is told in the frame of the first axis
-        let frames = chained(arm, Isometry3::identity(), turns_rad, &vec![1.0; n]);
+        let frames = chained(arm, Isometry3::identity(), turns_rad, shifts_mm, &vec![1.0; n]);
         let mut weight = Weight {
             arm,
             turns_rad: turns_rad.to_vec(),
@@ -212,10 +237,15 @@ impl<'a> Weight<'a> {
         if let Some(compliance) = &arm.effects().compliance {
             weight.pull = compliance.pull().into();
             weight.rad_per_nm = &compliance.rad_per_nm;
-            let mut sum = (Vector3::zeros(), 0.0);
-            for (i, body) in compliance.bodies.iter().enumerate().rev() {
+            let hung = |i: usize, body: &Body| {
                 let centre = weight.frames[i + 1] * Point3::from(body.centre_mm);
-                sum = (sum.0 + centre.coords * body.mass_kg, sum.1 + body.mass_kg);
+                (centre.coords * body.mass_kg, body.mass_kg)
+            };
+            // what is carried hangs on the last joint, as the probe does
+            let mut sum = hung(n - 1, &pose.payload());
+            for (i, body) in compliance.bodies.iter().enumerate().rev() {
+                let (moment, mass) = hung(i, body);
+                sum = (sum.0 + moment, sum.1 + mass);
                 weight.outboard[i] = sum;
             }
         }
@@ -250,6 +280,8 @@ impl<'a> Weight<'a> {
         let x_link = before * Vector3::new(turn.cos(), turn.sin(), 0.0);
         // a parameter turns all that is outboard of it about an axis through a point, or shifts it
         let (turning, shift, through) = match (k, joint.model) {
+            // of a bare last joint too, which has no model
+            (3, _) if self.arm.slides(j) => (Vector3::zeros(), z_joint, after.translation.vector),
             (0, _) => (-z_joint, Vector3::zeros(), before.translation.vector),
             (1, _) => (x_link, Vector3::zeros(), after.translation.vector),
             (2, _) => (Vector3::zeros(), x_link, after.translation.vector),

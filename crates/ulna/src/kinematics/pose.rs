@@ -1,7 +1,7 @@
 //! One pose, and one of a reading.
 
-use super::conditions::Conditions;
-use crate::arm::effects::Encoder;
+use super::conditions::{Conditions, PAYLOAD};
+use crate::arm::effects::{Body, Encoder};
 
 /// Encoder angles of one pose, and what was true at it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,14 @@ impl Pose<'_> {
             [] => 0.0,
             [all] => *all,
             each => each[joint],
+        }
+    }
+
+    /// What the last joint carried beside the arm's own masses.
+    pub(crate) fn payload(&self) -> Body {
+        match self.conditions.payload.first_chunk::<PAYLOAD>() {
+            None => Body::default(),
+            Some(&[mass_kg, x, y, z]) => Body { mass_kg, centre_mm: [x, y, z] },
         }
     }
 
@@ -46,12 +54,14 @@ pub struct Sample {
     pub warmth_k: Vec<f64>,
     /// As in [`Conditions`].
     pub approach: Vec<f64>,
+    /// As in [`Conditions`].
+    pub payload: Vec<f64>,
 }
 
 impl Sample {
     /// The pose alone.
     pub fn pose(&self) -> Pose<'_> {
-        let conditions = Conditions { warmth_k: &self.warmth_k, approach: &self.approach };
+        let conditions = Conditions { warmth_k: &self.warmth_k, approach: &self.approach, payload: &self.payload };
         Pose { q_rad: &self.q_rad, conditions }
     }
 }

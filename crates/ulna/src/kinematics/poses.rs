@@ -1,7 +1,7 @@
 //! Encoder angles of many poses, in columns, and what was true at them.
 
 use super::chain::Link;
-use super::conditions::{Conditions, Held};
+use super::conditions::{Conditions, Held, PAYLOAD};
 use super::pose::{Pose, Sample};
 use crate::arm::effects::{EncoderLanes, Seen};
 use crate::simd::{Columns, Lanes};
@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What a file says of many poses.
+/// What a file says of many poses. Of an encoder whose joint slides the "angles" are mm.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Angles<'a> {
     /// Row-major encoder angles, rad.
@@ -84,8 +84,8 @@ impl Poses {
     /// One pose, taken with a probe.
     pub fn sample(&self, row: usize, probe: usize) -> Sample {
         let q_rad = (0..self.encoders()).map(|j| self.q_rad.column(j)[row]).collect();
-        let (warmth_k, approach) = self.conditions.row(row);
-        Sample { probe, q_rad, warmth_k, approach }
+        let [warmth_k, approach, payload] = self.conditions.row(row);
+        Sample { probe, q_rad, warmth_k, approach, payload }
     }
 
     /// What they show of what effects depend on.
@@ -97,6 +97,12 @@ impl Poses {
     #[inline(always)]
     pub(in crate::kinematics) fn warmth<S: Simd>(&self, simd: S, i: usize, k: usize) -> Lanes<S> {
         self.conditions.warmth(simd, i, k)
+    }
+
+    /// What vector `k` of poses carried beside the arm's own masses, if any of all poses carried any.
+    #[inline(always)]
+    pub(in crate::kinematics) fn payload<S: Simd>(&self, simd: S, k: usize) -> Option<[Lanes<S>; PAYLOAD]> {
+        self.conditions.payload(simd, k)
     }
 
     /// Sine and cosine of the encoder angle of joint `i` for vector `k` of poses.
@@ -127,6 +133,9 @@ impl Poses {
         k: usize,
     ) -> (Lanes<S>, Lanes<S>) {
         let c = |value: f64| Lanes::splat(simd, value);
+        if link.slides {
+            return (c(-link.sin_theta0), c(link.cos_theta0));
+        }
         match &self.sin_cos {
             Some(kept) => {
                 let sin_q = kept.load(simd, i, k) * c(link.sign);
@@ -138,6 +147,16 @@ impl Poses {
                 let q = self.q_rad.load(simd, i, k);
                 q.mul_add(c(link.sign), c(-link.theta0)).sin_cos()
             }
+        }
+    }
+
+    /// Offset along the axis of joint `i` for vector `k` of poses: `d`, and what slides, mm.
+    #[inline(always)]
+    pub(in crate::kinematics) fn along<S: Simd>(&self, simd: S, link: &Link, i: usize, k: usize) -> Lanes<S> {
+        let d = Lanes::splat(simd, link.d);
+        match link.slides {
+            false => d,
+            true => self.q_rad.load(simd, i, k).mul_add(Lanes::splat(simd, link.sign), d),
         }
     }
 

@@ -185,14 +185,19 @@ impl Problem {
         self.groups.iter().all(|g| g.mirror_free() || g.placement_unknowns() > 0)
     }
 
-    /// Whether the mirror image of the arm explains the readings as well.
+    /// Whether the mirror image of the arm explains the readings as well: its joints turn, none slides.
     pub fn mirror_free(&self) -> bool {
-        self.groups.iter().all(|g| g.mirror_free())
+        !self.arm.any_slides() && self.groups.iter().all(|g| g.mirror_free())
     }
 
-    /// Whether a scaled arm explains the readings as well: no length is known.
+    /// Whether a scaled arm explains the readings as well: no length is known, and what slides says one.
     pub fn scale_free(&self) -> bool {
-        self.groups.iter().all(|g| g.scale_free())
+        !self.arm.any_slides() && self.groups.iter().all(|g| g.scale_free())
+    }
+
+    /// Whether any reading tells where the tip is.
+    pub fn tells_places(&self) -> bool {
+        self.groups.iter().any(|g| g.tell_places())
     }
 
     /// Whether an arm whose tip never moves explains the readings as well.

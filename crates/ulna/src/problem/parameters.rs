@@ -48,7 +48,7 @@ impl Problem {
     /// Standard uncertainty of each before any reading, where lengths and angles are known so well.
     pub fn known(&self, length_mm: f64, angle_rad: f64) -> Vec<f64> {
         let mut known = self.arm.known(length_mm, angle_rad);
-        known.extend(self.fitted_dimensions().map(|dimension| dimension.known(length_mm)));
+        known.extend(self.fitted_dimensions().map(|dimension| dimension.known(length_mm, angle_rad)));
         known
     }
 

@@ -56,7 +56,8 @@ impl Pin {
 
 /// The direction in which all lengths grow, over the unknowns: where no reading knows a length and none is held.
 pub(crate) fn growth(problem: &Problem, free: &[usize], values: &[f64]) -> Option<Vec<f64>> {
-    if !problem.scale_free() || problem.groups().is_empty() {
+    // where nothing tells places every length is lost by itself
+    if !problem.scale_free() || !problem.tells_places() {
         return None;
     }
     let (arm, units) = (problem.arm(), problem.arm().parameter_units());

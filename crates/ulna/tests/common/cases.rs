@@ -3,9 +3,11 @@
 //! A new kind gets a case here, or the contract fails and says so.
 
 use super::{Told, angles};
+use nalgebra::{Rotation3, Vector3};
 use rand::RngExt;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use ulna::artefacts::{Frame, Rows, Size, Stated};
+use ulna::kinematics::frames;
 use ulna::problem::Problem;
 
 /// An artefact and its readings.
@@ -77,10 +79,16 @@ pub const CASES: &[Case] = &[
     case("distances of an instrument of which nothing is known", "distance", |p, r, k| {
         distances(p, r, k, &[size("offset", 5.0, 0.0, true), size("scale", 1.001, 0.0, true)])
     }),
+    case("orientations", "orientation", |p, r, k| turned(p, r, k, false, Frame::Free)),
+    case("orientations of a target mounted anyhow", "orientation", |p, r, k| turned(p, r, k, true, Frame::Free)),
+    case("orientations in the arm's frame", "orientation", |p, r, k| turned(p, r, k, true, Frame::Arm)),
     case("flat", "plane", |p, r, k| touched(p, r, k, &balls(&[6.0, 6.0]), (3, 14))),
     // so many that no standing's balls leave its side undecided: there the cost has a kink
     case("flat touched with two balls", "plane", |p, r, k| touched(p, r, k, &balls(&[6.0, 40.0]), (3, 16))),
 ];
+
+/// What an orientation of these cases scatters by, at its lever.
+pub const ORIENTATION_U_MM: f64 = 2e-5 * 800.0;
 
 const fn size(name: &str, value: f64, u: f64, fitted: bool) -> Size<'_> {
     Size { name, value, u, fitted }
@@ -129,6 +137,35 @@ fn distances(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, di
         ..Rows::default()
     };
     problem.add(kind, &Stated { name: "wire", dimensions, ..Stated::default() }, &rows).unwrap();
+}
+
+/// A target on the last link as an instrument sees it from two places, some hundredths of a radian off.
+fn turned(problem: &mut Problem, rng: &mut Xoshiro256PlusPlus, kind: &str, fitted: bool, frame: Frame) {
+    let (n, count) = (problem.arm().encoders(), 44);
+    let (q, told) = (angles(rng, n * count), Told::any(rng, count, 1, n));
+    let mount_rad = [0.7, -1.1, 0.4];
+    let placement: Vec<i64> = (0..count).map(|i| (i % 2) as i64).collect();
+    let stands = [Rotation3::identity(), Rotation3::new(Vector3::new(0.9, -0.3, 2.0))];
+    let poses = told.at(&q);
+    let seen = |row: usize| {
+        let link = frames(problem.arm(), poses.pose(row, n)).last().unwrap().rotation.to_rotation_matrix();
+        let off = Vector3::from([0, 1, 2].map(|_| rng.random_range(-0.05..0.05)));
+        let stand = if frame == Frame::Free { stands[row % 2] } else { stands[0] };
+        (stand * Rotation3::new(off) * link * Rotation3::new(Vector3::from(mount_rad))).scaled_axis().into()
+    };
+    let rotation_rad: Vec<[f64; 3]> = (0..count).map(seen).collect();
+    let mount = ["rx", "ry", "rz"].iter().zip(mount_rad).map(|(name, value)| size(name, value + 0.02, 0.0, fitted));
+    let dimensions: Vec<Size> = mount.chain([size("lever", 800.0, 0.0, false)]).collect();
+    let rows = Rows {
+        poses,
+        probe: &(0..count).map(|i| i % 2).collect::<Vec<_>>(),
+        placement: Some(&placement),
+        rotation_rad: Some(&rotation_rad),
+        rotation_u_rad: Some(&vec![ORIENTATION_U_MM / 800.0; count]),
+        ..Rows::default()
+    };
+    let stated = Stated { name: "target", dimensions: &dimensions, frame: Some(frame), ..Stated::default() };
+    problem.add(kind, &stated, &rows).unwrap();
 }
 
 /// Touches all around places of something round, its diameter in reaches of the arm.

@@ -34,6 +34,15 @@ pub fn any_full_arm(rng: &mut Xoshiro256PlusPlus, n: usize) -> Arm {
     Arm::with_full_last_link(joints, probes).unwrap()
 }
 
+/// The same arm with some of its joints sliding, those of Hayati turning as before; none of them coupled.
+pub fn sliding(arm: &Arm, rng: &mut Xoshiro256PlusPlus) -> Arm {
+    let hayati = |i: usize| arm.joints().get(i).is_some_and(|joint| joint.model == JointModel::Hayati);
+    let each = (0..arm.encoders()).map(|i| (!hayati(i) && rng.random()).then_some(300.0));
+    let slides: Vec<Option<f64>> = each.collect();
+    let effects = Effects { coupling: None, ..arm.effects().clone() };
+    arm.with_effects(effects).unwrap().with_slides(&slides).unwrap()
+}
+
 /// The assumed truth of Cheng 2011, Table 2, with these probes.
 pub fn cheng_2011(probes: &[(&str, [f64; 3])]) -> Arm {
     let rows = [
@@ -66,6 +75,7 @@ pub fn any_effects(rng: &mut Xoshiro256PlusPlus, n: usize) -> Effects {
             rad_per_nm: (0..n).map(|_| small(5e-3)).collect(),
             bodies: (0..n).map(|_| body(&mut small)).collect(),
             gravity: [small(1.0), small(1.0), -1.5],
+            payload_kg: 8.0,
         }),
         base_tilt: Some(BaseTilt { rad: [small(1.0), small(1.0)], joints: n }),
         base_offset: Some(BaseOffset { mm: [small(50.0), small(50.0)], joints: n }),
@@ -95,19 +105,31 @@ pub fn approach(rng: &mut Xoshiro256PlusPlus, count: usize) -> Vec<f64> {
     (0..count).map(|_| f64::from(rng.random_range(-1..=1))).collect()
 }
 
+/// What each pose carried: mass, kg, and its centre, mm; some of them nothing.
+pub fn payload(rng: &mut Xoshiro256PlusPlus, poses: usize) -> Vec<f64> {
+    let mut one = || -> [f64; 4] {
+        let mass_kg = [0.0, rng.random_range(0.0..8.0)][rng.random_range(0..2)];
+        [mass_kg, rng.random_range(-90.0..90.0), rng.random_range(-90.0..90.0), rng.random_range(-90.0..90.0)]
+    };
+    (0..poses).flat_map(|_| one()).collect()
+}
+
 /// What was true at poses: of `joints` numbers each, warmth one or one for each joint.
 pub struct Told {
     pub warmth_k: Vec<f64>,
     pub approach: Vec<f64>,
+    pub payload: Vec<f64>,
 }
 
 impl Told {
     pub fn any(rng: &mut Xoshiro256PlusPlus, poses: usize, warmths: usize, approaches: usize) -> Told {
-        Told { warmth_k: warmth(rng, poses * warmths), approach: approach(rng, poses * approaches) }
+        let (warmth_k, approach) = (warmth(rng, poses * warmths), approach(rng, poses * approaches));
+        Told { warmth_k, approach, payload: payload(rng, poses) }
     }
 
     pub fn at<'a>(&'a self, q_rad: &'a [f64]) -> Angles<'a> {
-        Angles { q_rad, conditions: Conditions { warmth_k: &self.warmth_k, approach: &self.approach } }
+        let conditions = Conditions { warmth_k: &self.warmth_k, approach: &self.approach, payload: &self.payload };
+        Angles { q_rad, conditions }
     }
 }
 

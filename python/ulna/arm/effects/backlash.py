@@ -67,7 +67,9 @@ class Backlash(Effect):
         """One number."""
         return {} if own.backlash_rad is None else {"backlash": own.backlash_rad}
 
-    def for_core(self, joints: Sequence[BacklashOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(
+        self, joints: Sequence[BacklashOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
         """One number a joint."""
         return {"backlash_rad": np.array([own.backlash_rad or 0.0 for own in joints])}
 

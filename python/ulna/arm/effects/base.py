@@ -43,6 +43,7 @@ class _OfBase(Effect):
     """What both do alike: two numbers of the first joint."""
 
     of_first = True
+    of_turn = False
     field: ClassVar[str]
     """Of what a joint has of it."""
     key: ClassVar[str]
@@ -74,7 +75,7 @@ class _OfBase(Effect):
         said = getattr(own, self.field)
         return {} if said is None else {self.key: list(said)}
 
-    def for_core(self, joints: Sequence[Any], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(self, joints: Sequence[Any], gravity: Sequence[float], payload_kg: float = 0.0) -> dict[str, Any]:
         """Of the first joint."""
         return {self.array: np.array(getattr(joints[0], self.field) or (0.0, 0.0), dtype=np.float64)}
 
@@ -83,7 +84,7 @@ class _OfBase(Effect):
         x, y = self.suffixes
         return {self.field: (values[x], values[y])}
 
-    def check_joints(self, joints: Sequence[Any], path: Path) -> None:
+    def check_joints(self, joints: Sequence[Any], path: Path, payload_kg: float = 0.0) -> None:
         """Only the first axis stands on the base."""
         wrong = next((k for k, own in enumerate(joints, 1) if k > 1 and self.has(own)), None)
         if wrong is not None:

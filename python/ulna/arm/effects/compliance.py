@@ -1,6 +1,7 @@
 """`compliance`: joints that give way to the weight of what they carry.
 
-compliance_i m_i   added to each turn, with m_i the moment of gravity about axis i on all that the joint carries, N m
+compliance_i m_i   added to each turn, with m_i the moment of gravity about axis i on all that the joint carries, N m:
+                   the links behind it, and the load of the reading
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field
 
+from ulna.arm.conditions import PAYLOAD
 from ulna.arm.effects.effect import Effect, Row
 from ulna.formats.models import Strict
 from ulna.formats.units import Units
@@ -38,7 +40,8 @@ class Compliance(Effect):
     table = ComplianceKeys
     suffixes, examples = ("compliance",), ("compliance",)
     unit, drawn = "rad/(N m)", 1e-3  # a joint that gives way by more is broken
-    does = "give way to the weight of the links"
+    needs = PAYLOAD
+    does = "give way to what they carry"
     words = "the compliance of its joints"
     causes = MappingProxyType({"no-moment": "gravity along an axis"})
     left_out = "joints that give way under load"
@@ -73,26 +76,29 @@ class Compliance(Effect):
             found |= {"mass": own.mass_kg, "centre": list(own.centre_mm)}
         return found
 
-    def for_core(self, joints: Sequence[ComplianceOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
-        """With the masses of all joints and the direction of gravity."""
+    def for_core(
+        self, joints: Sequence[ComplianceOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
+        """With the masses of all joints, that of the heaviest load, and the direction of gravity."""
         return {
             "compliance_rad_per_nm": np.array([own.compliance_rad_per_nm or 0.0 for own in joints]),
             "masses_kg": np.array([own.mass_kg for own in joints]),
             "centres_mm": np.array([own.centre_mm for own in joints], dtype=np.float64),
             "gravity": np.array([float(g) for g in gravity]),
+            "payload_kg": np.array([payload_kg]),
         }
 
     def taken(self, own: ComplianceOfJoint, values: Mapping[str, float]) -> dict[str, Any]:
         """One number."""
         return {"compliance_rad_per_nm": values["compliance"]}
 
-    def check_joints(self, joints: Sequence[ComplianceOfJoint], path: Path) -> None:
+    def check_joints(self, joints: Sequence[ComplianceOfJoint], path: Path, payload_kg: float = 0.0) -> None:
         """Joints that give way give way to something."""
         gives = next((k for k, own in enumerate(joints, 1) if own.compliance_rad_per_nm), None)
-        if gives is not None and not any(own.mass_kg for own in joints):
+        if gives is not None and not payload_kg and not any(own.mass_kg for own in joints):
             raise UlnaInputError(
                 f"{path}: key 'joint.{gives}.compliance': a joint gives way to the weight of its links, but no joint "
-                "has a mass; expected mass (kg) and centre of each. Add them, or remove the key."
+                "has a mass, and there is no load; expected mass (kg) and centre of each. Add them, or remove the key."
             )
 
     def check_modified(self, table: ComplianceKeys, key: str, path: Path) -> None:
@@ -103,9 +109,9 @@ class Compliance(Effect):
                 'table does not have; expected masses with convention = "dh" only. Write the arm in that form.'
             )
 
-    def check_asked(self, joints: Sequence[ComplianceOfJoint], arm: str, label: str) -> None:
+    def check_asked(self, joints: Sequence[ComplianceOfJoint], arm: str, label: str, payload_kg: float = 0.0) -> None:
         """There is a mass."""
-        if not any(own.mass_kg for own in joints):
+        if not payload_kg and not any(own.mass_kg for own in joints):
             raise UlnaInputError(
                 f"{label}: key 'fit.extras': 'compliance' is how joints give way to the weight of the links, but no "
                 f"joint of arm '{arm}' has a mass; expected mass (kg) and centre in the arm file's joint tables. Add "

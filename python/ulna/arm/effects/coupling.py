@@ -78,7 +78,9 @@ class Coupling(Effect):
             return {"coupling": dict(zip(map(str, own.coupled_to), own.coupling, strict=True))}
         return {"coupled_to": list(own.coupled_to)} if own.coupled_to else {}
 
-    def for_core(self, joints: Sequence[CouplingOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(
+        self, joints: Sequence[CouplingOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
         """Pairs of joints, counted from 0, and the ratio of each."""
         pairs = self.ratios(joints)
         return {
@@ -99,7 +101,7 @@ class Coupling(Effect):
         """One number for each joint that it is coupled to."""
         return {"coupling": tuple(values[f"coupling{other}"] for other in own.coupled_to)}
 
-    def check_joints(self, joints: Sequence[Any], path: Path) -> None:
+    def check_joints(self, joints: Sequence[Any], path: Path, payload_kg: float = 0.0) -> None:
         """Coupled to other joints that there are, of an arm that does not give way besides: moments are those of
         joints that turn alone."""
         for k, own in enumerate(joints, 1):
@@ -117,7 +119,7 @@ class Coupling(Effect):
                 "expected one of the two, since the moments of an arm with coupled joints are not computed. Remove one."
             )
 
-    def check_asked(self, joints: Sequence[CouplingOfJoint], arm: str, label: str) -> None:
+    def check_asked(self, joints: Sequence[CouplingOfJoint], arm: str, label: str, payload_kg: float = 0.0) -> None:
         """Some joint says to which others it may be coupled."""
         if not any(own.coupled_to for own in joints):
             raise UlnaInputError(

@@ -42,6 +42,8 @@ class Effect(ABC):
     """Standard uncertainty of a parameter where the study states none; None: nothing is known beforehand."""
     of_first: ClassVar[bool] = False
     """Whether only the first joint has it: where the arm stands, of which no length depends."""
+    of_turn: ClassVar[bool] = True
+    """Whether only a joint that turns has it; one that slides has none of its parameters."""
     needs: ClassVar[Condition | None] = None
     """On which condition of a pose it depends."""
     whose: ClassVar[str] = "joints"
@@ -81,7 +83,7 @@ class Effect(ABC):
         """Keys of a joint's table, in mm and rad."""
 
     @abstractmethod
-    def for_core(self, joints: Sequence[Any], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(self, joints: Sequence[Any], gravity: Sequence[float], payload_kg: float = 0.0) -> dict[str, Any]:
         """Its arrays in `_core.Arm.with_effects`: a joint without it counts as having zero of it."""
 
     @abstractmethod
@@ -98,7 +100,7 @@ class Effect(ABC):
         A picture of the arm has that; what else an effect does is too small to be seen in one."""
         return []
 
-    def check_joints(self, joints: Sequence[Any], path: Path) -> None:
+    def check_joints(self, joints: Sequence[Any], path: Path, payload_kg: float = 0.0) -> None:
         """Whether it makes sense in an arm file with such joints. Raises UlnaInputError."""
         return
 
@@ -106,7 +108,7 @@ class Effect(ABC):
         """Whether a joint's table in Craig's form can say what it says. Raises UlnaInputError."""
         return
 
-    def check_asked(self, joints: Sequence[Any], arm: str, label: str) -> None:
+    def check_asked(self, joints: Sequence[Any], arm: str, label: str, payload_kg: float = 0.0) -> None:
         """Whether a study can ask for it of an arm with such joints; label: of the study. Raises UlnaInputError."""
         return
 

@@ -97,9 +97,11 @@ def extra_of(parameter: str) -> Extra | None:
     return next(own, None)
 
 
-def for_core(joints: Sequence[Effects], gravity: Sequence[float]) -> list[tuple[str, dict[str, Any]]]:
-    """The argument of `_core.Arm.with_effects`."""
-    return [(effect.name, effect.for_core(joints, gravity)) for effect in effects_of(joints)]
+def for_core(
+    joints: Sequence[Effects], gravity: Sequence[float], payload_kg: float = 0.0
+) -> list[tuple[str, dict[str, Any]]]:
+    """The argument of `_core.Arm.with_effects`. payload_kg: mass of the heaviest load."""
+    return [(effect.name, effect.for_core(joints, gravity, payload_kg)) for effect in effects_of(joints)]
 
 
 def from_core(joints: Sequence[Effects], values: dict[str, float]) -> list[Effects]:

@@ -38,6 +38,7 @@ class Expansion(Effect):
     suffixes, examples = ("expansion",), ("expansion",)
     unit, drawn = "1/K", 3e-5  # no engineering material grows by more
     needs = TEMPERATURE
+    of_turn = False
     whose, does = "links", "grow with temperature"
     words = "the growth of its links with temperature"
     causes = MappingProxyType({"temperature-still": "a temperature that does not change"})
@@ -68,7 +69,9 @@ class Expansion(Effect):
         """One number."""
         return {} if own.expansion_per_k is None else {"expansion": own.expansion_per_k}
 
-    def for_core(self, joints: Sequence[ExpansionOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(
+        self, joints: Sequence[ExpansionOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
         """One number a joint."""
         return {"expansion_per_k": np.array([own.expansion_per_k or 0.0 for own in joints])}
 

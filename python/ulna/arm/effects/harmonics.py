@@ -76,7 +76,9 @@ class Harmonics(Effect):
         found = {f"{part}{order}": value for order, cs in pairs for part, value in zip("cs", cs, strict=True)}
         return {"harmonics": found} if found else {}
 
-    def for_core(self, joints: Sequence[HarmonicsOfJoint], gravity: Sequence[float]) -> dict[str, Any]:
+    def for_core(
+        self, joints: Sequence[HarmonicsOfJoint], gravity: Sequence[float], payload_kg: float = 0.0
+    ) -> dict[str, Any]:
         """Every joint with the orders of all."""
         orders = sorted({order for own in joints for order in own.harmonics_rad})
         amplitudes = [[own.harmonics_rad.get(order, (0.0, 0.0)) for order in orders] for own in joints]

@@ -2,7 +2,8 @@
 
 `T_i = Rz(sign_i q_i - theta0_i) · Tz(d_i) · Tx(a_i) · Rx(alpha_i) · Ry(beta_i)` is `Rz(sign_i q_i)` and a transform
 that no encoder changes. So a reader of these transforms needs to know a turn about z and nothing else of the model; how
-far each joint turns is a constant matrix times the encoders' angles.
+far each joint turns is a constant matrix times the encoders' angles. A joint that slides has a shift along z in
+place of the turn.
 """
 
 from __future__ import annotations
@@ -50,7 +51,8 @@ def bodies(arm: ArmData, q_rad: ArrayLike) -> list[F64]:
     t = np.eye(4)
     found = [t]
     turned_rad = turns(arm) @ np.asarray(q_rad, dtype=np.float64)
-    for before, angle_rad in zip(constant_transforms(arm), turned_rad.tolist(), strict=False):
-        t = t @ before @ pose(turn("z", angle_rad), np.zeros(3))
+    for before, moved, joint in zip(constant_transforms(arm), turned_rad.tolist(), arm.joints, strict=False):
+        shift_mm = np.array([0.0, 0.0, moved if joint.slides else 0.0])
+        t = t @ before @ pose(turn("z", 0.0 if joint.slides else moved), shift_mm)
         found.append(t)
     return found

@@ -71,6 +71,21 @@ def link_between(p_mm: F64, w: F64, like: Joint | None = None) -> Joint:
     return _joint(-turn_rad, math.atan2(sine, w[2]), float(n @ p_mm[:2]), float(p_mm[2] - along * w[2]), 0.0, "dh")
 
 
+def sliding_link(p_mm: F64, w: F64) -> Joint:
+    """The same of a joint that slides along the axis z: always of DH, for what slides has no Hayati form.
+
+    It may be that the line goes through the axis itself, as where the axis was put there.
+    """
+    aside_mm, sine = float(np.hypot(p_mm[0], p_mm[1])), float(np.hypot(w[0], w[1]))
+    if aside_mm < _NO_LINK_MM:
+        theta0_rad = -math.atan2(w[0], -w[1]) if sine > _NO_ANGLE_RAD else 0.0
+        return _joint(theta0_rad, math.atan2(sine, w[2]), 0.0, float(p_mm[2]), 0.0, "dh")
+    if sine < _NONE:
+        theta0_rad = -math.atan2(p_mm[1], p_mm[0])
+        return _joint(theta0_rad, 0.0 if w[2] > 0 else math.pi, aside_mm, float(p_mm[2]), 0.0, "dh")
+    return link_between(p_mm, w, like=Joint())
+
+
 def _other_way(turn_rad: float, near_rad: float) -> bool:
     """Whether the opposite direction is nearer. Of two that are as near, up to rounding, the positive one stays."""
     off = math.remainder(turn_rad - near_rad, 2 * math.pi)
@@ -114,7 +129,8 @@ def hayati_where_parallel(
         d_mm = without_rounding_mm(joint.d_mm + float(t_new_old[2, 3]))
         own = replace(joint, theta0_rad=theta0_rad, d_mm=d_mm)
         t_new_old = np.eye(4)
-        if joint.model == "hayati" or abs(math.sin(joint.alpha_rad)) < PARALLEL:
+        parallel = not joint.slides and abs(math.sin(joint.alpha_rad)) < PARALLEL  # what slides has a d
+        if joint.model == "hayati" or parallel:
             if d_mm:
                 own = _without_offset(own, old)
                 t_new_old = inverse(link_at_zero(own)) @ old

@@ -52,6 +52,8 @@ class Cloud:
     reading: I64
     """(N,) index into `Readings`; length rows appear twice, once for each pose."""
     trend: Trend
+    slides: bool = False
+    """Of a prismatic joint: x is mm."""
 
 
 @dataclass(frozen=True)
@@ -131,9 +133,11 @@ def clouds(study: Study, arm: Arm, residuals: pl.DataFrame) -> tuple[list[Cloud]
     found: list[Cloud] = []
     pointed = [part for part in parts if part.along_joint_mm is not None]
     for joint in range(arm.n if pointed else 0):
-        x = np.degrees(folded_rad(np.concatenate([part.q_rad[:, joint] for part in pointed])))
+        x, slides = np.concatenate([part.q_rad[:, joint] for part in pointed]), arm.joints[joint].slides
+        x = x if slides else np.degrees(folded_rad(x))
         y = np.concatenate([part.along_joint_mm[:, joint] for part in pointed if part.along_joint_mm is not None])
-        found.append(_cloud("joint", joint + 1, x, y, np.concatenate([part.reading for part in pointed])))
+        reading = np.concatenate([part.reading for part in pointed])
+        found.append(_cloud("joint", joint + 1, x, y, reading, slides))
     reach = np.linalg.norm(np.concatenate([part.tip_mm for part in parts]), axis=1)
     size = np.concatenate([part.size_mm for part in parts])
     found.append(_cloud("reach", 0, reach, size, np.concatenate([part.reading for part in parts])))
@@ -182,8 +186,8 @@ def _column(temperature_c: F64 | None, column: int) -> F64:
     return temperature_c if temperature_c.ndim == 1 else temperature_c[:, column]
 
 
-def _cloud(over: str, joint: int, x: F64, residual_mm: F64, reading: I64) -> Cloud:
-    return Cloud(over, joint, x, residual_mm, reading, trend(x, residual_mm))
+def _cloud(over: str, joint: int, x: F64, residual_mm: F64, reading: I64, slides: bool = False) -> Cloud:
+    return Cloud(over, joint, x, residual_mm, reading, trend(x, residual_mm), slides)
 
 
 def trend(x: F64, value_mm: F64) -> Trend:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from ulna.arm.conditions import PAYLOAD
 from ulna.artefacts.quantities import NAMES
 from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
@@ -62,6 +63,9 @@ def _given(sheet: Sheet, data: Element, result: Result) -> None:
     given += [(f"probe.{name}.ball", probe.ball_mm, "mm") for name, probe in arm.probes.items() if probe.ball_mm]
     for effect in arm.effects:
         given += effect.given([joint.effects for joint in arm.joints], arm.gravity)
+    for name, load in arm.payloads.items() if PAYLOAD in arm.uses else ():
+        numbers = zip(("mass", *(f"centre.{axis}" for axis in "xyz")), load.numbers.tolist(), strict=True)
+        given += [(f"payload.{name}.{key}", value, "kg" if key == "mass" else "mm") for key, value in numbers]
     names, values, units = zip(*given, strict=True)
     real_list(sheet, quantity(sheet, data, sheet.own("dcc.given")), names, values, units)
 

@@ -94,7 +94,7 @@ def cloud(axes: Axes, found: Cloud, readings: ReadingRows, say: Say, mark: float
 
 def _cause(found: Cloud, say: Say) -> str:
     titles = {
-        "joint": say("axis.joint-deg", joint=found.joint),
+        "joint": say("axis.joint-mm" if found.slides else "axis.joint-deg", joint=found.joint),
         "reach": say("axis.reach-mm"),
         "temperature": say("axis.temperature-joint", joint=found.joint) if found.joint else say("axis.temperature"),
     }

@@ -68,7 +68,7 @@ def cloud_plot(name: str, cloud: Cloud, readings: ReadingRows, words: Words) -> 
     part = shown(outlier, MOST_POINTS)
     plain = part.index[~outlier[part.index]]
     titles = {
-        "joint": say("axis.joint-deg", joint=cloud.joint),
+        "joint": say("axis.joint-mm" if cloud.slides else "axis.joint-deg", joint=cloud.joint),
         "reach": say("axis.reach-mm"),
         "temperature": say("axis.temperature-joint", joint=cloud.joint) if cloud.joint else say("axis.temperature"),
     }
@@ -118,9 +118,9 @@ def _marks(
 ) -> dict[str, object]:
     """edge: where they stand, their own values being beyond the axis."""
     value = cloud.residual_mm[kept]
-    row = label(words("hover.row"))
+    row, unit = label(words("hover.row")), "mm" if cloud.slides else _UNITS[cloud.over]
     hover = [
-        f"{where(readings, int(k), row)}<br>{number(float(x))} {_UNITS[cloud.over]}, {number(float(each))} mm"
+        f"{where(readings, int(k), row)}<br>{number(float(x))} {unit}, {number(float(each))} mm"
         for k, x, each in zip(cloud.reading[kept], cloud.x[kept], value, strict=True)
     ]
     height = value if edge is None else np.full(len(kept), edge)

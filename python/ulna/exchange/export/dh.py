@@ -54,8 +54,9 @@ def dh_table(
 ) -> str:
     """The text of the table; `path` is the arm's file, for messages.
 
-    Columns joint, name, sign, theta0, alpha, a, d, where a joint is a Hayati joint also beta, units behind an
-    underscore. turn = sign * encoder - theta0. Raises UlnaInputError for a beta in the modified form.
+    Columns joint, name, sign, theta0, alpha, a, d, where a joint is a Hayati joint also beta, where one is prismatic
+    also type, lower and upper, units behind an underscore. turn = sign * encoder - theta0. Raises UlnaInputError for a
+    beta in the modified form.
     """
     arm = as_arm(arm)
     tilted = [k for k, joint in enumerate(arm.joints, start=1) if joint.beta_rad]
@@ -74,6 +75,8 @@ def dh_table(
     named += [(TIP, name, tip_row(probe)) for name, probe in probes.items()]
     columns = [f"theta0_{angle}", f"alpha_{angle}", f"a_{length}", f"d_{length}"]
     columns += [f"beta_{angle}"] * bool(tilted)
+    slides = bool(arm.slides.any())
+    columns += ["type", f"lower_{length}", f"upper_{length}"] * slides
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["joint", "name", "sign", *columns])
@@ -81,7 +84,10 @@ def dh_table(
         values = [row.theta0_rad / RAD_PER[angle], row.alpha_rad / RAD_PER[angle]]
         values += [row.a_mm / MM_PER[length], row.d_mm / MM_PER[length]]
         values += [row.beta_rad / RAD_PER[angle]] * bool(tilted)
-        writer.writerow([label, name, row.sign, *map(_number, values)])
+        low, high = (row.slides and row.limits_rad) or (0.0, 0.0)
+        kind = "fixed" if label == TIP else row.type
+        travel = [kind, _number(low / MM_PER[length]), _number(high / MM_PER[length])] * slides
+        writer.writerow([label, name, row.sign, *map(_number, values), *travel])
     return stream.getvalue()
 
 

@@ -103,6 +103,8 @@ def fill_template(
     # what is put into the file is in m
     chain = in_units(chain_of(document, tip_link, base_link), angle_unit="rad")
     drawn, t_root_base = arm_from_chain(chain)
+    drawn.check_turns(chain.path, "descriptions that are filled in")
+    arm.check_turns(chain.path, "descriptions that are filled in")
     if drawn.n != arm.n:
         raise UlnaInputError(
             f"{chain.path}: there are {drawn.n} rotary joints up to link '{chain.tip_link}', arm '{arm.name}' has "

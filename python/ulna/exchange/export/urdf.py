@@ -54,7 +54,7 @@ def joint_origins(arm: Arm) -> list[F64]:
     That of the first is in the base frame, in which its axis may lean and stand aside.
 
     `Tx(a) · Rx(alpha) · Ry(beta)` of the link before, then `Rz(-theta0) · Tz(d)` of the joint's own link: a turn about
-    the joint's axis may as well come before the encoder's.
+    the joint's axis may as well come before the encoder's, and so may both before a shift along it.
     """
     origins = []
     before = t_base_first(arm)
@@ -66,7 +66,7 @@ def joint_origins(arm: Arm) -> list[F64]:
 
 
 def _joint(name: str, parent: str, child: str, t: F64, joint: Joint | None) -> str:
-    kind = "fixed" if joint is None else "revolute" if joint.limits_rad else "continuous"
+    kind = "fixed" if joint is None else _kind(joint)
     lines = [
         f"  <joint name={quoteattr(name)} type={quoteattr(kind)}>",
         f"    <parent link={quoteattr(parent)}/>",
@@ -76,9 +76,13 @@ def _joint(name: str, parent: str, child: str, t: F64, joint: Joint | None) -> s
     if joint is not None:
         lines.append(f'    <axis xyz="0 0 {joint.sign}"/>')
     if joint is not None and joint.limits_rad:
-        low, high = (number(value) for value in joint.limits_rad)
+        low, high = (number(value / 1000.0 if joint.slides else value) for value in joint.limits_rad)
         lines.append(f'    <limit lower="{low}" upper="{high}" effort="0" velocity="0"/>')
     return "\n".join([*lines, "  </joint>\n"])
+
+
+def _kind(joint: Joint) -> str:
+    return "prismatic" if joint.slides else "revolute" if joint.limits_rad else "continuous"
 
 
 #: m or rad: what rounding leaves where a zero is meant

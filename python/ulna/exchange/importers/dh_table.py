@@ -1,16 +1,19 @@
 """Reading a table of Denavit–Hartenberg parameters (CSV), as makers and controllers give it.
 
-Columns theta0 (or offset, which is -theta0), alpha, a, d; perhaps beta, sign, joint and name. A row for each joint,
-from the base; rows behind them whose `joint` is `tip` are frames that no encoder turns.
+Columns theta0 (or offset, which is -theta0), alpha, a, d; perhaps beta, sign, joint and name; where joints slide also
+type, lower and upper. A row for each joint, from the base; rows behind them whose `joint` is `tip` are frames that no
+encoder turns.
 """
 
 from __future__ import annotations
 
 import difflib
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 
@@ -29,8 +32,8 @@ from ulna.ground.errors import UlnaInputError
 
 WHAT = "a table of Denavit–Hartenberg parameters (CSV with a header theta0 or offset, alpha, a, d)"
 
-ANGLES, LENGTHS = ("theta0", "offset", "alpha", "beta"), ("a", "d")
-LABELS = ("joint", "name")
+ANGLES, LENGTHS = ("theta0", "offset", "alpha", "beta"), ("a", "d", "lower", "upper")
+LABELS = ("joint", "name", "type")
 
 #: no arm is longer; a wrong unit makes it so
 MOST_MM = 1e6
@@ -97,7 +100,10 @@ def dh_of(header: Header, length: str | None = None, angle: str | None = None) -
     _check_known(header, known)
     numbers = {column.name for column in columns} | {"sign"}
     frame = read_table(header, lambda name: name in numbers)
-    rows = [_row(header, k, cells, columns) for k, cells in enumerate(frame.iter_rows(named=True), start=1)]
+    rows = [
+        _typed(header, k, _row(header, k, cells, columns), cells, columns)
+        for k, cells in enumerate(frame.iter_rows(named=True), start=1)
+    ]
     labels = _labels(header, frame)
     joints = [replace(row, name=name or None) for row, (kind, name) in zip(rows, labels, strict=True) if kind != TIP]
     if len(joints) < 2:
@@ -210,6 +216,29 @@ def _row(header: Header, k: int, cells: dict[str, float], columns: list[_Column]
     theta0_rad = values["theta0"] if "theta0" in values else 0.0 - values["offset"]
     model = "hayati" if beta_rad else "dh"
     return Joint(theta0_rad, values["alpha"], values["a"], values["d"], beta_rad, int(sign), model)  # type: ignore[arg-type]
+
+
+def _typed(header: Header, k: int, row: Joint, cells: dict[str, Any], columns: list[_Column]) -> Joint:
+    """With what the column `type` says, and of a prismatic joint how far it slides. Raises UlnaInputError."""
+    said = cells.get("type", "rotary")
+    if said not in ("rotary", "prismatic", "fixed"):
+        raise UlnaInputError(
+            f"{header.path}: {header.where(k)}, column 'type': got '{said}', expected rotary, prismatic, or of a tip "
+            "fixed. Correct it."
+        )
+    if said != "prismatic":
+        return row
+    values = {column.parameter: cells[column.name] * column.factor for column in columns}
+    low, high = values.get("lower", math.nan), values.get("upper", math.nan)
+    if row.beta_rad or not low < high:
+        what = (
+            "a prismatic joint has no beta" if row.beta_rad else "lower and upper do not say how far the joint slides"
+        )
+        raise UlnaInputError(
+            f"{header.path}: {header.where(k)}: {what}; expected beta 0, and columns lower and upper with a unit of "
+            "length, the lower one first. Correct the row."
+        )
+    return replace(row, type="prismatic", limits_rad=(low, high))
 
 
 def _labels(header: Header, frame: pl.DataFrame) -> list[tuple[str, str]]:

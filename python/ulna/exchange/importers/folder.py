@@ -17,13 +17,14 @@ units = {{ length = "mm", angle = "rad" }}
 
 [[readings]]
 file = "{readings}"
-
+{keys}
 """
 
 
-def study_text(readings: str, artefact: str) -> str:
-    """A study of one table beside it, in mm and rad; `artefact`: the text of what was touched."""
-    return _HEAD.format(readings=readings) + artefact
+def study_text(readings: str, artefact: str, keys: str = "") -> str:
+    """A study of one table beside it, in mm and rad; `artefact`: the text of what was touched; `keys`: more lines of
+    the table that names the readings."""
+    return _HEAD.format(readings=readings, keys=keys) + artefact
 
 
 def write_study_folder(

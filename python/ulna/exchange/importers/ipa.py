@@ -40,12 +40,23 @@ COLUMNS = {
 }
 """The table's name → Ulna's."""
 
+ORIENTATIONS = {f"measurement_r{axis}": f"r{axis}" for axis in "xyz"}
+"""The same of the target's orientation: in degrees, about x, then about y and z as they turn along."""
+
 WHAT = "a table with semicolons and a header shoulder_pan_joint;…;measurement_x;…"
 
 ARTEFACT = """\
 [artefact.tracker]              # every reading is a point of its own; the tracker's place is unknown
 kind = "points"
 frame = "free"
+"""
+
+
+TARGET = """
+[artefact.target]               # how the tracker's target is turned; its mount on the flange is unknown
+kind = "orientation"
+rotation = "XYZ"
+angle = "deg"
 """
 
 
@@ -57,17 +68,19 @@ def import_ipa_ur10(
     spread: bool = False,
     standings: int = 1,
     parquet: bool = False,
+    orientations: bool = False,
     force: bool = False,
 ) -> tuple[int, int]:
     """A measurement file as a study folder `out`; returns how many readings are fitted and how many held out.
 
     `fit` readings go into study.toml, the rest, if any, into held-out.toml: every `every`-th row from the first on, or
     with `spread` the middle row of each of `fit` equal blocks of the file. `standings`: the tracker's place is taken as
-    new in each of so many equal parts of the file, one placement for each. Raises UlnaInputError; nothing is written
-    then.
+    new in each of so many equal parts of the file, one placement for each. `orientations`: those of the target are read
+    as well. Raises UlnaInputError; nothing is written then.
     """
-    header = _header(path)
-    columns = list(COLUMNS.values())
+    names = COLUMNS | ORIENTATIONS if orientations else COLUMNS
+    header = _header(path, names)
+    columns = list(names.values())
     frame = read_table(header, lambda column: column in columns, columns)
     count = len(frame)
     fitted = _chosen(count, fit, every, spread, path)
@@ -83,7 +96,8 @@ def import_ipa_ur10(
     studies: dict[str, str] = {}
     tables: dict[str, pl.DataFrame] = {}
     for study, (rows, mask) in parts.items():
-        studies[f"{study}.toml"] = study_text(f"{rows}.{ending}", ARTEFACT)
+        of_points = study_text(f"{rows}.{ending}", ARTEFACT)
+        studies[f"{study}.toml"] = both(f"{rows}.{ending}") if orientations else of_points
         tables[f"{rows}.{ending}"] = readings.filter(mask)
     write_study_folder(out, ur10(), studies, tables, force=force)
     return int(fitted.sum()), int((~fitted).sum())
@@ -109,12 +123,19 @@ def _chosen(count: int, fit: int | None, every: int, spread: bool, path: Path) -
     return chosen
 
 
-def _header(path: Path) -> TextTable:
+def both(readings: str) -> str:
+    """A study that reads one table twice: the target's places, and how it was turned."""
+    turns = f'\n[[readings]]\nfile = "{readings}"\nartefact = "target"\nignore = ["x", "y", "z"]\n'
+    keys = 'artefact = "tracker"\nignore = ["rx", "ry", "rz"]\n'
+    return study_text(readings, ARTEFACT, keys) + TARGET + turns
+
+
+def _header(path: Path, names: dict[str, str]) -> TextTable:
     start = read_bytes(path, WHAT, limit=1 << 14)
     columns = [name.strip() for name in start.split(b"\n", 1)[0].decode("utf-8-sig", "replace").split(";")]
-    for column in COLUMNS:
+    for column in names:
         if column not in columns:
             raise UlnaInputError(
                 f"{path}: line 1: the column '{column}' is missing; expected {WHAT}. Name the right file."
             )
-    return TextTable(path, columns, separator=";", decimal=",").renamed(COLUMNS)
+    return TextTable(path, columns, separator=";", decimal=",").renamed(names)

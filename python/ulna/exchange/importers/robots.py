@@ -51,3 +51,38 @@ def ur10() -> Arm:
     )
     flange_mm, target_mm = 92.2, 109.0
     return Arm("Universal Robots UR10", joints, {"target": Probe(0.0, 0.0, flange_mm + target_mm)})
+
+
+def ur5() -> Arm:
+    """Universal Robots UR5, six axes, with a tracker's reflector 31 mm before the flange.
+
+    Denavit–Hartenberg parameters of series 3 (manual of the CB3 controller, table C.3); axes 2, 3 and 4 are parallel,
+    as on the UR10.
+    """
+    joints = (
+        Joint(0.0, _QUARTER, 0.0, 89.159),
+        Joint(0.0, 0.0, -425.0, model="hayati"),
+        Joint(0.0, 0.0, -392.25, model="hayati"),
+        Joint(0.0, _QUARTER, 0.0, 109.15),
+        Joint(0.0, -_QUARTER, 0.0, 94.65),
+        Joint(),
+    )
+    flange_mm, target_mm = 82.3, 31.0
+    return Arm("Universal Robots UR5", joints, {"target": Probe(0.0, 0.0, flange_mm + target_mm)})
+
+
+def wam() -> Arm:
+    """Barrett WAM, seven axes, with a tracker's reflector on the tool plate.
+
+    Denavit–Hartenberg parameters of the maker's user's manual (D1001, table 5).
+    """
+    joints = (
+        Joint(0.0, -_QUARTER, 0.0, 0.0),
+        Joint(0.0, _QUARTER, 0.0, 0.0),
+        Joint(0.0, -_QUARTER, 45.0, 550.0),
+        Joint(0.0, _QUARTER, -45.0, 0.0),
+        Joint(0.0, -_QUARTER, 0.0, 300.0),
+        Joint(0.0, _QUARTER, 0.0, 0.0),
+        Joint(),
+    )
+    return Arm("Barrett WAM", joints, {"target": Probe(0.0, 0.0, 60.0)})

@@ -8,7 +8,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.arm.effects.effects import NONE, Effects
-from ulna.arm.frames.links import PARALLEL, link_at_zero, link_between, without_rounding_mm
+from ulna.arm.frames.links import PARALLEL, link_at_zero, link_between, sliding_link, without_rounding_mm
 from ulna.arm.frames.rigid import inverse, pose, smallest_turn
 from ulna.arm.joint import Joint
 from ulna.arm.probe import Probe
@@ -27,29 +27,34 @@ def arm_from_chain(chain: Chain) -> tuple[Arm, F64]:
     The drawn tip is `t_root_base · arm.tip(q)` in every pose, to rounding. The model wants its base frame on axis 1: it
     is the root's where that stands there, and where not, the root's moved the shortest way to the axis and turned by
     the smallest angle. An axis that points another way is geometry of the link before it. Axis 1 has no link before it:
-    one that points down, as of robots that turn clockwise, has sign -1. Where the chain's links have masses, so have
-    the joints, and gravity pulls down the root's z.
-    Raises UlnaInputError for fewer than two rotary joints.
+    one that points down, as of robots that turn clockwise, has sign -1. Of a prismatic joint only the direction
+    matters: it is taken to lie where the next joint is. Where the chain's links have masses, so have the joints, and
+    gravity pulls down the root's z.
+    Raises UlnaInputError for fewer than two joints that turn or slide.
     """
     frames, t_root_tip = frames_at_zero(chain)
     if len(frames) < 2:
         raise UlnaInputError(
-            f"{chain.path}: there are {len(frames)} rotary joints up to link '{chain.tip_link}'; expected at least "
-            "two. Choose another link with --tip-link."
+            f"{chain.path}: there are {len(frames)} joints that turn or slide up to link '{chain.tip_link}'; expected "
+            "at least two. Choose another link with --tip-link."
         )
     turning = chain.turning
     axes = [t[:3, :3] @ step.axis for t, step in zip(frames, turning, strict=True) if step.axis is not None]
-    t_root_base, sign = _base(frames[0][:3, 3], axes[0])
+    points = [t[:3, 3] for t in frames]
+    for k in reversed(range(1, len(frames) - 1)):
+        points[k] = points[k + 1] if turning[k].slides else points[k]
+    t_root_base, sign = _base(points[0], axes[0])
     joints: list[Joint] = []
     t = t_root_base
     for k, step in enumerate(turning):
         link = Joint()
         if k < len(turning) - 1:
-            link = link_between(*seen_from(t, frames[k + 1][:3, 3], axes[k + 1]))
+            line = seen_from(t, points[k + 1], axes[k + 1])
+            link = sliding_link(*line) if step.slides else link_between(*line)
             t = t @ link_at_zero(link)
         own = _mass(step.mass, inverse(t) @ frames[k])
         link = replace(link, sign=sign if k == 0 else 1, name=step.name, limits_rad=step.limits_rad, effects=own)
-        link = replace(link, endless=step.endless)
+        link = replace(link, endless=step.endless, type="prismatic" if step.slides else "rotary")
         joints.append(link)
     x, y, z = (without_rounding_mm(value) for value in (inverse(t) @ t_root_tip)[:3, 3].tolist())
     down = (-t_root_base[2, :3]).tolist() if any(joint.effects.mass_kg for joint in joints) else [0.0, 0.0, -1.0]

@@ -19,6 +19,7 @@ from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
 
 TURNING = ("revolute", "continuous")
+SLIDING = "prismatic"
 
 #: the name of a link that is the tip where nothing else is said
 USUAL_TIP = "ball_link"
@@ -26,7 +27,7 @@ USUAL_TIP = "ball_link"
 
 @dataclass(frozen=True)
 class Step:
-    """One joint of a chain: a fixed transform, then, unless fixed, a turn about an axis."""
+    """One joint of a chain: a fixed transform, then, unless fixed, a turn about an axis or a shift along it."""
 
     name: str
     t_parent_joint: F64
@@ -34,10 +35,13 @@ class Step:
     axis: F64 | None
     """(3,) unit vector in the joint's frame; None for a fixed joint."""
     limits_rad: tuple[float, float] | None = None
+    """Of one that slides mm."""
+    slides: bool = False
+    """Of type prismatic."""
     endless: bool = False
     """Of type continuous."""
     mass: Mass = NO_MASS
-    """Of what moves with it, up to the next rotary joint."""
+    """Of what moves with it, up to the next joint with an encoder."""
     element: Element | None = field(default=None, compare=False, repr=False)
     """Where it comes from."""
 
@@ -57,7 +61,7 @@ class Chain:
 
     @property
     def turning(self) -> list[Step]:
-        """Its rotary joints."""
+        """Its joints with encoders: rotary ones, and prismatic ones, which slide."""
         return [step for step in self.steps if step.axis is not None]
 
 
@@ -165,17 +169,25 @@ class _End:
     turning: int = 0
     last: str = ""
     """The last rotary joint."""
-    usable: bool = True
-    """Only rotary joints with encoders of their own, and fixed ones."""
+    own: bool = True
+    """Only rotary and prismatic joints with encoders of their own, and fixed ones."""
+    slid: bool = False
+    """Behind a prismatic joint behind which none turns: a finger of a gripper, rather than a joint of an arm."""
+
+    @property
+    def usable(self) -> bool:
+        """Whether an arm may end there that nobody named."""
+        return self.own and not self.slid
 
     def below(self, joint: Element) -> _End:
-        turns = joint.get("type") in TURNING
+        turns, slides = joint.get("type") in TURNING, joint.get("type") == SLIDING
         return _End(
             self.root,
             self.joints + 1,
             self.turning + turns,
             (joint.get("name") or "?") if turns else self.last,
-            self.usable and (joint.get("type") == "fixed" or (turns and joint.find("mimic") is None)),
+            self.own and (joint.get("type") == "fixed" or ((turns or slides) and joint.find("mimic") is None)),
+            slides or (self.slid and not turns),
         )
 
 
@@ -251,10 +263,10 @@ def _step(joint: Element, path: Path) -> Step:
     t = origin_of(joint, f"joint '{name}'", path)
     if kind == "fixed":
         return Step(name, t, None, element=joint)
-    if kind not in TURNING:
+    if kind not in (*TURNING, SLIDING):
         raise UlnaInputError(
-            f"{path}: joint '{name}' is of type '{kind}'; expected rotary (revolute, continuous) or fixed joints from "
-            "base to tip. Choose a tip before it with --tip-link, or a base behind it with --base-link."
+            f"{path}: joint '{name}' is of type '{kind}'; expected rotary (revolute, continuous), prismatic or fixed "
+            "joints from base to tip. Choose a tip before it with --tip-link, or a base behind it with --base-link."
         )
     mimic = joint.find("mimic")
     if mimic is not None:
@@ -269,13 +281,22 @@ def _step(joint: Element, path: Path) -> Step:
             f"{path}: joint '{name}', axis: got '{_plain(axis)}', which has no direction; expected a unit vector such "
             "as '0 0 1'. Correct it."
         )
-    return Step(name, t, axis / length, _limits(joint, name, path), kind == "continuous", element=joint)
+    slides, limits = kind == SLIDING, _limits(joint, name, path)
+    if slides and limits is None:
+        raise UlnaInputError(
+            f'{path}: joint \'{name}\' is prismatic and has no limits; expected <limit lower="…" upper="…"/> with how '
+            "far it slides. Add it."
+        )
+    if slides and limits is not None:
+        limits = 1000.0 * limits[0], 1000.0 * limits[1]
+    return Step(name, t, axis / length, limits, slides, kind == "continuous", element=joint)
 
 
 def _limits(joint: Element, name: str, path: Path) -> tuple[float, float] | None:
-    """rad; None where there are none, as also 0 and 0, or numbers that no joint reaches, are meant to say."""
+    """rad, or m of one that slides; None where there are none, as also 0 and 0, or numbers that no joint reaches, are
+    meant to say."""
     limit = joint.find("limit")
-    if joint.get("type") != "revolute" or limit is None:
+    if joint.get("type") not in ("revolute", SLIDING) or limit is None:
         return None
     low, high = (
         number(limit, key, "0", f"joint '{name}'", path, most=math.inf, called=f"limit {key}")

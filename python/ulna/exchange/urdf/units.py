@@ -30,7 +30,7 @@ def in_units(chain: Chain, length_unit: str | None = None, angle_unit: str | Non
             )
     if angle_unit is None:
         for step in chain.steps:
-            if step.limits_rad is not None and max(map(abs, step.limits_rad)) > MOST_RAD:
+            if step.limits_rad is not None and not step.slides and max(map(abs, step.limits_rad)) > MOST_RAD:
                 low, high = step.limits_rad
                 raise UlnaInputError(
                     f"{chain.path}: joint '{step.name}', limit: got {low:g} to {high:g} rad, more than two turns; "
@@ -45,10 +45,10 @@ def _scaled(step: Step, length: float, angle: float) -> Step:
     t = step.t_parent_joint.copy()
     t[:3, 3] *= length
     x, y, z = (length * value for value in step.mass.centre_mm)
-    limits = step.limits_rad
+    limits, unit = step.limits_rad, length if step.slides else angle
     return replace(
         step,
         t_parent_joint=t,
         mass=replace(step.mass, centre_mm=(x, y, z)),
-        limits_rad=None if limits is None else (angle * limits[0], angle * limits[1]),
+        limits_rad=None if limits is None else (unit * limits[0], unit * limits[1]),
     )

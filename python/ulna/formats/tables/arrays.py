@@ -151,7 +151,7 @@ class ArrayTable(Header):
     def _values(self, variable: Variable) -> NDArray[Any]:
         try:
             values = np.asarray(variable.read())
-        except MemoryError:
+        except (MemoryError, UlnaInputError):
             raise
         except (NoTextError, UnicodeDecodeError) as error:
             why = "texts that are not UTF-8" if isinstance(error, UnicodeDecodeError) else str(error)

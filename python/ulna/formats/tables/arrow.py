@@ -13,7 +13,7 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.compute
 
-from ulna.formats.cells import names_of, no_numbers
+from ulna.formats.cells import labels_of, no_numbers
 from ulna.formats.header import Header, Piece
 from ulna.ground.errors import UlnaInputError
 
@@ -24,10 +24,28 @@ def array_piece(header: Header, batch: Any, numbers: Sequence[str], texts: Seque
     for name in numbers:
         column = batch.column(name)
         if not (pa.types.is_floating(column.type) or pa.types.is_integer(column.type)):
-            raise UlnaInputError(no_numbers(header, before + 1, name, column[0].as_py(), str(column.type)))
+            raise UlnaInputError(no_numbers(header, before + 1, name, _first(column), str(column.type)))
         if column.type != pa.float64():
             column = pyarrow.compute.cast(column, pa.float64(), safe=False)
         columns.append(pl.Series(name, column))
-    columns += [names_of(pl.Series(name, batch.column(name))) for name in texts]
+    columns += [labels_of(header, name, _series(header, name, batch)) for name in texts]
     frame = header.checked(pl.DataFrame(columns), lambda column: column in numbers, before=before)
     return header.piece(frame, numbers, texts, before)
+
+
+def _first(column: Any) -> Any:
+    """Its first value, or that there is none that Python knows."""
+    try:
+        return column[0].as_py()
+    except (ValueError, OverflowError, pa.ArrowException):
+        return "a value beyond its type"
+
+
+def _series(header: Header, name: str, batch: Any) -> pl.Series:
+    try:
+        return pl.Series(name, batch.column(name))
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, pa.ArrowException, ValueError, TypeError):
+        raise UlnaInputError(
+            f"{header.path}: {header.named(name)} is of type {batch.column(name).type}; expected texts or whole "
+            "numbers as labels. Write it as texts."
+        ) from None

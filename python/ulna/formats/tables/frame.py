@@ -14,7 +14,7 @@ from typing import Any
 
 import polars as pl
 
-from ulna.formats.cells import bad_cell, names_of, no_numbers
+from ulna.formats.cells import bad_cell, labels_of, names_of, no_numbers
 from ulna.formats.frames import as_frame
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
@@ -47,7 +47,7 @@ class FrameTable(Header):
                 if len(present):
                     row = int(column.is_not_null().arg_true()[0]) + 1
                     raise UlnaInputError(no_numbers(self, row, name, present[0], str(column.dtype)))
-            found.append(column.cast(pl.Float64) if numeric(name) else names_of(column))
+            found.append(column.cast(pl.Float64) if numeric(name) else labels_of(self, name, column))
         return pl.DataFrame(found)
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:

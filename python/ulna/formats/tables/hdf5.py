@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -101,7 +102,7 @@ def _kind(dtype: Any) -> str:
 def _whole(path: Path, place: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
         with _h5py().File(path) as file:
-            return _plain(file[place][()])
+            return _plain(_written(path, file[place])[()])
 
     return read
 
@@ -109,9 +110,36 @@ def _whole(path: Path, place: str) -> Callable[[], NDArray[Any]]:
 def _field(path: Path, place: str, field: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
         with _h5py().File(path) as file:
-            return _plain(file[place][field])
+            return _plain(_written(path, file[place])[field])
 
     return read
+
+
+def _written(path: Path, data: Any) -> Any:
+    """The data set, where all of its values stand in this file: of others HDF5 makes zeros without a word, and the hash
+    of the file does not vouch for them. Raises UlnaInputError."""
+    name = data.name.lstrip("/")
+    elsewhere = [source.file_name for source in data.virtual_sources()] if data.is_virtual else []
+    elsewhere += [str(name) for name, *_ in data.external or ()]
+    others = list(dict.fromkeys(file for file in elsewhere if file != "."))
+    if others:
+        raise UlnaInputError(
+            f"{path}: the values of '{name}' stand in other files ({', '.join(others)[:80]}); expected all of them in "
+            "this one. Copy it with its values (h5repack), and name the copy."
+        )
+    missing = 0
+    if data.size and not data.is_virtual and data.external is None:
+        if data.chunks is not None:
+            blocks = math.prod(-(-size // chunk) for size, chunk in zip(data.shape, data.chunks, strict=True))
+            missing = blocks - data.id.get_num_chunks()
+        elif data.id.get_storage_size() == 0:
+            blocks = missing = 1
+    if missing > 0:
+        raise UlnaInputError(
+            f"{path}: {missing} of {blocks} blocks of '{name}' were never written; expected a number in every row. The "
+            "program that made the file did not finish: write it again."
+        )
+    return data
 
 
 def _plain(values: Any) -> NDArray[Any]:
@@ -144,7 +172,7 @@ def _chars(codes: NDArray[Any]) -> Texts:
 def _cell(path: Path, place: str) -> Callable[[], NDArray[Any]]:
     def read() -> NDArray[Any]:
         with _h5py().File(path) as file:
-            references = file[place][()].T
+            references = _written(path, file[place])[()].T
             texts = np.empty(references.shape, dtype=object)
             for at, reference in np.ndenumerate(references):
                 texts[at] = _cell_text(file[reference])

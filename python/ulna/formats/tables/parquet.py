@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,13 +11,17 @@ from typing import NoReturn
 import polars as pl
 import polars.exceptions
 
-from ulna.formats.cells import bad_cell, names_of, no_numbers
+from ulna.formats.cells import bad_cell, first_of, labels_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import installed
 
 _PAGE_BUFFER_BYTES = 1 << 20
+UNREADABLE = (polars.exceptions.PolarsError, polars.exceptions.PanicException, OSError)
+"""What Polars says of a damaged file, or of a type that it does not know."""
+# else Polars ends, and says so on stderr, at a column of a zone that is nowhere, which nobody may have asked for
+os.environ.setdefault("POLARS_IGNORE_TIMEZONE_PARSE_ERROR", "1")
 
 
 @dataclass(frozen=True)
@@ -30,15 +35,14 @@ class ParquetTable(Header):
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
         try:
             stored = pl.read_parquet(self.path, columns=[self.own(name) for name in columns])
-        except (polars.exceptions.PolarsError, OSError) as error:
+        except UNREADABLE as error:
             self._unreadable(error)
         found = []
         for name in columns:
             column = stored[self.own(name)].rename(name)
             if numeric(name) and not column.dtype.is_numeric():
-                value = column[0] if len(column) else None
-                raise UlnaInputError(no_numbers(self, 1, name, value, str(column.dtype)))
-            found.append(column.cast(pl.Float64) if numeric(name) else names_of(column))
+                raise UlnaInputError(no_numbers(self, 1, name, first_of(column), str(column.dtype)))
+            found.append(column.cast(pl.Float64) if numeric(name) else labels_of(self, name, column))
         return pl.DataFrame(found)
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
@@ -66,7 +70,7 @@ class ParquetTable(Header):
         except (pa.ArrowException, OSError) as error:
             self._unreadable(error)
 
-    def _unreadable(self, error: Exception) -> NoReturn:
+    def _unreadable(self, error: BaseException) -> NoReturn:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}.") from None
 
@@ -75,6 +79,6 @@ def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> Parquet
     """Raises UlnaInputError for a damaged file."""
     try:
         return ParquetTable(path, list(pl.read_parquet_schema(path)), what=what)
-    except (polars.exceptions.PolarsError, OSError) as error:
+    except UNREADABLE as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None

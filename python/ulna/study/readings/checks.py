@@ -17,7 +17,8 @@ from ulna.arm.arm import Arm
 from ulna.arm.joint import MOST_RAD
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.formats.header import Header
-from ulna.formats.own_units import ANGLES, check_units
+from ulna.formats.own_units import ANGLES, LENGTHS, LENGTHS_STATED, check_units
+from ulna.formats.units import MM_PER
 from ulna.formats.wording import SHOWN, counted, rows_named
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
@@ -42,13 +43,17 @@ def check_scale(
     remedy: str = "State the unit with the key 'angle'.",
 ) -> None:
     """Whether angles can be in the unit that is stated. (N, n) rad; factors (n,) rad per unit; remedy: how the unit is
-    stated here. Raises UlnaInputError.
+    stated here. Of prismatic joints mm. Raises UlnaInputError.
 
     An endless joint may stand anywhere, one with limits as far as they go, and every joint within two turns. Where only
     one joint is beyond, and is one that goes all the way round, it has counted turns: no matter of units, for those are
     the same for all joints, but remarked upon (`Outside`).
     """
-    check_units(header, [f"{letter}{k + 1}" for k in range(len(factors))], unit, ANGLES, remedy)
+    slides = arm.slides
+    check_units(header, [f"{letter}{k + 1}" for k in np.flatnonzero(~slides)], unit, ANGLES, remedy)
+    for k in np.flatnonzero(slides).tolist():
+        length = next(name for name, mm in MM_PER.items() if mm == factors[k])
+        check_units(header, [f"{letter}{k + 1}"], length, LENGTHS, LENGTHS_STATED)
     farthest_rad = np.abs(q_rad).max(axis=0)
     beyond = [k for k, joint in enumerate(arm.joints) if farthest_rad[k] > joint.most_rad]
     if not beyond or (len(beyond) == 1 and arm.joints[beyond[0]].goes_round):
@@ -140,10 +145,11 @@ class Outside:
             _, value, at = self._farthest[k]
             said.append(
                 f"{path}: column '{self._letter}{k + 1}': {counted(self._count[k], 'reading')} outside the "
-                f"limits of joint {k + 1} ({low:g} to {high:g} rad): {rows_named(np.array(self._first[k]))}; the "
-                f"farthest is {value:.6g} rad in row {at}. Check the limits in the arm file, or the readings."
+                f"limits of joint {k + 1} ({low:g} to {high:g} {joint.unit}): {rows_named(np.array(self._first[k]))}; "
+                f"the farthest is {value:.6g} {joint.unit} in row {at}. Check the limits in the arm file, or the "
+                "readings."
                 + " A joint that turns on and on has endless = true in place of limits."
-                * (abs(value) > MOST_RAD)
+                * (not joint.slides and abs(value) > MOST_RAD)
             )
         return said
 

@@ -22,12 +22,14 @@ from ulna.formats.tables.heads import is_number
 from ulna.formats.unused import remark_strange
 from ulna.ground.arrays import I64
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.study.readings.conditions import check_conditions, condition_columns, is_condition
+from ulna.study.readings.conditions import check_conditions, condition_columns, is_number_condition
 
 NAMES = ("id", "probe", "artefact", "placement", "feature")
 
 
 COORDINATES = ("x", "y", "z", "u")
+ROTATIONS = ("rw", "rx", "ry", "rz", "ur")
+"""How a target was turned, and how uncertain that is."""
 
 MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if kind.measured_column is not None))
 """Distances that are measured along with a row."""
@@ -35,7 +37,12 @@ MEASURED = list(dict.fromkeys(kind.measured_column for kind in KINDS.values() if
 
 def is_numeric(column: str) -> bool:
     """Whether a column of a readings file holds numbers; the others hold names."""
-    return column in MEASURED or is_condition(column) or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
+    return (
+        column in MEASURED
+        or column in ROTATIONS
+        or is_number_condition(column)
+        or re.fullmatch(r"[qp][0-9]+|[xyzu]", column) is not None
+    )
 
 
 def is_length(column: str) -> bool:
@@ -43,11 +50,12 @@ def is_length(column: str) -> bool:
     return column in MEASURED or column in COORDINATES
 
 
-def known_columns(joints: int, coordinates: bool) -> list[str]:
+def known_columns(joints: int, coordinates: bool, turned: bool = False) -> list[str]:
     """The names of all columns that a readings file of an arm may have; x, y, z and u where readings touch points of
-    their own."""
+    their own, rx, ry, rz and so on where they say how a target was turned."""
     several = [f"{name}{k}" for name in ("q", "p") for k in range(1, joints + 1)]
-    return [*NAMES, *MEASURED, *several, *condition_columns(joints), *(COORDINATES if coordinates else ())]
+    own = [*(COORDINATES if coordinates else ()), *(ROTATIONS if turned else ())]
+    return [*NAMES, *MEASURED, *several, *condition_columns(joints), *own]
 
 
 def temperature_columns(header: Header, joints: int) -> list[str]:
@@ -63,13 +71,14 @@ def check_columns(
     remarks: list[str],
     coordinates: bool = False,
     asked: Collection[str] = (),
+    turned: bool = False,
 ) -> list[str]:
     """The encoder columns must fit the arm; a column that is nearly known is an error, any other is remarked upon,
     unless it is one of `asked`, of which the study speaks. Returns the known columns that are there."""
     for letter in ("q", "p") if any(re.fullmatch(r"p[0-9]+", c) for c in header.columns) else ("q",):
         _check_angles(header, letter, joints, arm)
     check_conditions(header, joints, arm)
-    known = known_columns(joints, coordinates)
+    known = known_columns(joints, coordinates, turned)
     words = [name for name in known if not name[-1].isdecimal()]
     remark_strange(header, known, words, remarks, asked)
     return [column for column in header.columns if column in known]
@@ -116,7 +125,7 @@ def _check_angles(header: Header, letter: str, joints: int, arm: str) -> None:
 
 
 class ReadingsEntry(TableKeys):
-    """One readings file. artefact, probe, placement and feature fill the column where the file has none."""
+    """One readings file. artefact, probe, placement, feature and payload fill the column where the file has none."""
 
     file: str
     """Path, relative to the study file."""
@@ -126,6 +135,8 @@ class ReadingsEntry(TableKeys):
     probe: str | None = None
     placement: str | None = None
     feature: str | None = None
+    payload: str | None = None
+    """What was carried: the name of a [payload] of the study or of the arm file, or "none"."""
     approach: Literal["column", "order"] | None = None
     """What says from which side joints were approached: the columns approach1 … (where the file has them, this need not
     be said), or the order of the rows: the sign of each encoder's last change."""
@@ -148,6 +159,8 @@ class Source:
     index: int
     """Into `Study.files`."""
     arm_file: Path
+    carried: str | None = None
+    """What was carried where neither the file nor its table says it: the study's key `carried`."""
     table: FrameTable | None = None
     """The readings, their columns under their own names, where they are no file."""
 
@@ -176,7 +189,7 @@ def codes(
     frame: pl.DataFrame,
     header: Header,
     source: Source,
-    column: Literal["artefact", "probe", "feature"],
+    column: Literal["artefact", "probe", "feature", "payload"],
     known: list[str],
     owner: str,
     row: I64,

@@ -13,7 +13,15 @@ from ulna.formats.header import Header
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
-_COLUMN = re.compile(f"({'|'.join(prefix for each in CONDITIONS for prefix in each.fields)})[0-9]*")
+_COLUMN = re.compile(
+    "|".join(f"{prefix}{'[0-9]*' if each.of_joints else ''}" for each in CONDITIONS for prefix in each.fields)
+)
+_TEXTS = {prefix for each in CONDITIONS if each.text for prefix in each.fields}
+
+
+def is_number_condition(column: str) -> bool:
+    """Whether a column says such a thing in numbers."""
+    return is_condition(column) and column not in _TEXTS
 
 
 def is_condition(column: str) -> bool:
@@ -24,12 +32,13 @@ def is_condition(column: str) -> bool:
 def condition_columns(joints: int) -> list[str]:
     """The names of all such columns of an arm."""
     found = [each.name for each in CONDITIONS if each.common]
-    return found + [f"{prefix}{k}" for each in CONDITIONS for prefix in each.fields for k in range(1, joints + 1)]
+    each_joint = [prefix for each in CONDITIONS if each.of_joints for prefix in each.fields]
+    return found + [f"{prefix}{k}" for prefix in each_joint for k in range(1, joints + 1)]
 
 
 def check_conditions(header: Header, joints: int, arm: str) -> None:
     """All columns of a condition are there, or none. Raises UlnaInputError."""
-    for condition, prefix in _prefixes():
+    for condition, prefix in _numbers():
         each = [f"{prefix}{k}" for k in range(1, joints + 1)]
         there = [column for column in header.columns if re.fullmatch(f"{prefix}[0-9]+", column)]
         twice = condition.common and prefix in header.columns
@@ -49,10 +58,10 @@ def columns_of(condition: Condition, prefix: str, columns: Sequence[str], joints
 
 
 def said_of(frame: pl.DataFrame, joints: int, header: Header, row: I64) -> dict[str, F64]:
-    """What the columns say, by the fields of `Readings`: (N,) of one column, (N, n) of one a joint. row: (N,) in the
-    file. Raises UlnaInputError for what cannot be."""
+    """What the columns of numbers say, by the fields of `Readings`: (N,) of one column, (N, n) of one a joint. row:
+    (N,) in the file. Raises UlnaInputError for what cannot be."""
     found: dict[str, F64] = {}
-    for condition, prefix in _prefixes():
+    for condition, prefix in _numbers():
         own = columns_of(condition, prefix, frame.columns, joints)
         if own:
             values = np.ascontiguousarray(frame.select(own).to_numpy(), dtype=np.float64)
@@ -82,5 +91,5 @@ def approach_by_order(q_rad: F64, p_rad: F64 | None) -> tuple[F64, F64 | None]:
     return (approach, None) if p_rad is None else (approach[::2], approach[1::2])
 
 
-def _prefixes() -> Iterator[tuple[Condition, str]]:
-    return ((condition, prefix) for condition in CONDITIONS for prefix in condition.fields)
+def _numbers() -> Iterator[tuple[Condition, str]]:
+    return ((condition, prefix) for condition in CONDITIONS if not condition.text for prefix in condition.fields)

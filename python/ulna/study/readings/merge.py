@@ -68,6 +68,9 @@ def _joined(artefact: Artefact, own: list[Readings]) -> Readings:
         temperature_c=_said(own, "temperature_c"),
         approach=_said(own, "approach"),
         p_approach=_said(own, "p_approach"),
+        rotation_rad=of("rotation_rad"),
+        rotation_u_rad=of("rotation_u_rad"),
+        payload=_said(own, "payload"),
     )
 
 

@@ -36,6 +36,8 @@ from ulna.study.readings.columns import (
 )
 from ulna.study.readings.conditions import approach_by_order, said_of
 from ulna.study.readings.own_points import has_own_points, own_points
+from ulna.study.readings.payloads import carried_in
+from ulna.study.readings.turned import said_of_target
 
 WHAT = "a readings file (CSV with a header q1,q2,…, Parquet, .xlsx, .mat or HDF5)"
 
@@ -75,7 +77,8 @@ def _table(
     place = f"{source.study}: key '{source.key}"
     layout = Layout.of(entry, (f"{place}.", "'"), "[[readings]]")
     coordinates = any(map(has_own_points, artefacts.values()))
-    known = known_columns(arm.n, coordinates)
+    turned = any(kind_of(artefact).turned for artefact in artefacts.values())
+    known = known_columns(arm.n, coordinates, turned)
     header = (
         read_header(path, WHAT, layout, known) if source.table is None else named_header(source.table, layout, known)
     )
@@ -84,7 +87,7 @@ def _table(
     selection = Selection(entry.where or {}, entry.split, which, place)
     asked = list(dict.fromkeys(selection.columns(header).values()))
     ignored = ignored_columns(header, entry.ignore or (), f"{place}.ignore'")
-    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, [*asked, *ignored])
+    needed = check_columns(header, arm.n, arm.name, remarks, coordinates, [*asked, *ignored], turned)
     needed = [column for column in needed if column not in ignored]
     if asked:
         texts = header.cells(lambda _: False, asked)
@@ -142,7 +145,9 @@ def _part(
         check_scale(p_rad, "p", arm, factors, source.entry.angle or units.angle, header, row)
     if kind.measured_column is not None:
         length_mm = _measured(kind.measured_column, frame, row, artefact, header, source, units)
-    said: dict[str, Any] = {**said_of(frame, arm.n, header, row)}
+    said: dict[str, Any] = said_of(frame, arm.n, header, row) | carried_in(frame, header, source, arm, row, remarks)
+    if kind.turned:
+        said |= said_of_target(frame, row, artefact, header, source)
     return Readings(
         artefact=artefact,
         q_rad=q_rad,
@@ -169,10 +174,11 @@ def angles(frame: pl.DataFrame, letter: str, factors: F64) -> F64:
 
 
 def angle_factors(source: Source, arm: Arm, units: Units) -> F64:
-    """(n,) rad in one unit of the file."""
+    """(n,) rad in one unit of the file; of prismatic joints mm in one of its units of length."""
     unit = source.entry.angle or units.angle
     if unit != "counts":
-        return np.full(arm.n, RAD_PER[unit])
+        return arm.each(RAD_PER[unit], units.mm)
+    arm.check_turns(f"{source.study}: key '{source.key}.angle'", "readings in counts")
     for k, joint in enumerate(arm.joints, start=1):
         if joint.counts_per_turn is None:
             raise UlnaInputError(

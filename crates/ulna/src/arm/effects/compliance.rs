@@ -17,6 +17,8 @@ pub struct Compliance {
     pub bodies: Vec<Body>,
     /// Where gravity pulls, base frame; of any length but zero.
     pub gravity: [f64; 3],
+    /// Mass of the heaviest load that a pose may say beside them, kg.
+    pub payload_kg: f64,
 }
 
 /// A rigid body that moves with a joint.
@@ -35,6 +37,17 @@ const NM_PER_KG_MM: f64 = 9.80665e-3;
 const UPRIGHT: f64 = 1e-9;
 /// A joint that gives way by more than this for a newton metre is broken, rad.
 const MOST_RAD_PER_NM: f64 = 1e-3;
+
+/// A mass that an arm may carry.
+///
+/// # Errors
+/// Less than nothing, or more than a thousand tonnes.
+pub(crate) fn check_mass(mass_kg: f64, what: &str) -> Result<()> {
+    if (0.0..=1e6).contains(&mass_kg) {
+        return Ok(());
+    }
+    Err(Error::OutOfRange { what: what.into(), value: mass_kg, expected: "a number from 0 to 1e6" })
+}
 
 impl Compliance {
     /// Gravity as a vector that makes N m of kg mm.
@@ -72,7 +85,7 @@ impl Effect for Compliance {
     /// By the largest moment that gravity could make about any axis of an arm with this reach.
     fn moves_mm(&self, reach_mm: f64) -> f64 {
         let mass: f64 = self.bodies.iter().map(|body| body.mass_kg).sum();
-        reach_mm * (NM_PER_KG_MM * mass * reach_mm).max(f64::MIN_POSITIVE)
+        reach_mm * (NM_PER_KG_MM * (mass + self.payload_kg) * reach_mm).max(f64::MIN_POSITIVE)
     }
 
     fn known(&self, _: f64) -> f64 {
@@ -95,14 +108,9 @@ impl Effect for Compliance {
                 expected: "a positive number",
             });
         }
+        check_mass(self.payload_kg, "the mass of the heaviest load, kg,")?;
         for (i, body) in self.bodies.iter().enumerate() {
-            if !(0.0..=1e6).contains(&body.mass_kg) {
-                return Err(Error::OutOfRange {
-                    what: format!("the mass of joint {}, kg,", i + 1),
-                    value: body.mass_kg,
-                    expected: "a number from 0 to 1e6",
-                });
-            }
+            check_mass(body.mass_kg, &format!("the mass of joint {}, kg,", i + 1))?;
             if let Some(&value) = body.centre_mm.iter().find(|c| !c.is_finite()) {
                 return Err(Error::NotFinite { what: format!("the centre of mass of joint {}", i + 1), value });
             }
@@ -136,8 +144,9 @@ impl FromStated for Compliance {
         let masses_kg = given.take("masses_kg", &[joints])?;
         let centres_mm = given.take("centres_mm", &[joints, 3])?;
         let gravity = given.take("gravity", &[3])?;
+        let payload_kg = given.take("payload_kg", &[1])?[0];
         let body = |(&mass_kg, c): (&f64, &[f64])| Body { mass_kg, centre_mm: [c[0], c[1], c[2]] };
         let bodies = masses_kg.iter().zip(centres_mm.chunks_exact(3)).map(body).collect();
-        Ok(Compliance { rad_per_nm, bodies, gravity: [gravity[0], gravity[1], gravity[2]] })
+        Ok(Compliance { rad_per_nm, bodies, gravity: [gravity[0], gravity[1], gravity[2]], payload_kg })
     }
 }

@@ -26,6 +26,7 @@ pub use all::Effects;
 pub use backlash::Backlash;
 pub(crate) use base::Base;
 pub use base::{BaseOffset, BaseTilt};
+pub(crate) use compliance::check_mass;
 pub use compliance::{Body, Compliance};
 pub use coupling::Coupling;
 pub use effect::{Effect, FromStated};

@@ -25,6 +25,15 @@ const MOMENT: usize = 10;
 const TANGENT: usize = 11;
 const WEIGHT: usize = 16;
 
+/// Vectors behind those of the joints: the mass of what each pose carries beside the arm's own, kg.
+pub(super) const MORE: usize = 1;
+
+/// Mass of what the poses carried beside the arm's own.
+#[inline(always)]
+fn carried_kg<S: Simd>(simd: S, chain: &Chain, region: &[f64]) -> Lanes<S> {
+    Lanes::load(simd, region, chain.links.len() * SLOTS)
+}
+
 /// A vector of the region and joint `i`.
 #[inline(always)]
 fn load<S: Simd>(simd: S, region: &[f64], i: usize, slot: usize) -> Lanes<S> {
@@ -57,16 +66,21 @@ fn before_tilts<S: Simd>(
 #[inline(always)]
 pub(super) fn prepare<S: Simd>(simd: S, chain: &Chain, carried: &Carried, poses: &Poses, k: usize, region: &mut [f64]) {
     let c = |value: f64| Lanes::splat(simd, value);
-    let [mut x, mut y, mut z] = [c(0.0); 3];
+    // what is carried hangs on the last joint, as the probe does
+    let [load_kg, x, y, z] = poses.payload(simd, k).unwrap_or([c(0.0); 4]);
+    load_kg.store(region, chain.links.len() * SLOTS);
+    let [mut x, mut y, mut z] = [x, y, z].map(|centre| centre * load_kg);
     for (i, link) in chain.links.iter().enumerate().rev() {
         let slot = i * SLOTS;
         let body = carried.first_moments[i];
-        let mass = carried.masses[i];
+        let mass = load_kg + c(carried.masses[i]);
         (x, y, z) = (x + c(body[0]), y + c(body[1]), z + c(body[2]));
         [x, y, z] = before_tilts(simd, link, [x, y, z], region, slot + BODY);
         if !link.bare {
-            x = x + c(mass * link.a);
-            z = z + c(mass * link.d);
+            x = mass.mul_add(c(link.a), x);
+            z = mass.mul_add(poses.along(simd, link, i, k), z);
+        } else if link.slides {
+            z = mass.mul_add(poses.along(simd, link, i, k), z);
         }
         let (sin, cos) = poses.turn(simd, link, i, k);
         sin.store(region, slot + SIN);
@@ -106,7 +120,8 @@ pub(super) fn weigh<S: Simd>(region: &mut [f64], i: usize, weight: Lanes<S>) {
     weight.store(region, i * SLOTS + WEIGHT);
 }
 
-/// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn, alpha, a and d or beta.
+/// Calls `each` with joint i and the derivatives of `Σ w M` with respect to its turn (of a bare last joint that slides:
+/// its shift), alpha, a and d or beta.
 #[inline(always)]
 pub(super) fn derivatives<S: Simd>(
     simd: S,
@@ -116,7 +131,7 @@ pub(super) fn derivatives<S: Simd>(
     mut each: impl FnMut(usize, [Lanes<S>; 4]),
 ) {
     let c = |value: f64| Lanes::splat(simd, value);
-    let zero = c(0.0);
+    let (zero, load_kg) = (c(0.0), carried_kg(simd, chain, region));
     // the tangent of S along the turns w, carried to the base
     let [mut x, mut y, mut z] = [zero; 3];
     for (i, link) in chain.links.iter().enumerate().rev() {
@@ -147,11 +162,11 @@ pub(super) fn derivatives<S: Simd>(
         let turn = x.mul_add(hy, -(y * hx)) + turned_x.mul_add(gy, -(turned_y * gx));
         hx = gy.mul_add(w, hx);
         hy = gx.neg_mul_add(w, hy);
+        let mass = load_kg + c(carried.masses[i]);
         if link.bare {
-            each(i, [turn, zero, zero, zero]);
+            each(i, [if link.slides { hz * mass } else { turn }, zero, zero, zero]);
             continue;
         }
-        let mass = c(carried.masses[i]);
         let (z, link_z) = (at(BODY + 2), at(TANGENT + 2));
         let alpha = hz.mul_add(y, -(hy * z)) + gz.mul_add(link_y, -(gy * link_z));
         let (a, d) = (hx * mass, hz * mass);

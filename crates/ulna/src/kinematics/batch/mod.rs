@@ -1,7 +1,9 @@
 //! The forward map and its derivatives over many readings at once: columns of numbers, in SIMD lanes.
 
 mod compliance;
+mod effects;
 mod kernel;
+mod steps;
 mod sweep;
 mod turned;
 

@@ -187,7 +187,7 @@ mod tests {
                 ratios: vec![1.0, -0.02, 0.9, -1.1],
             }),
             expansion: Some(Expansion { per_kelvin: (0..7).map(|i| 0.1 * wave(i)).collect() }),
-            compliance: Some(Compliance { rad_per_nm, bodies, gravity: [0.1, 0.2, -1.0] }),
+            compliance: Some(Compliance { rad_per_nm, bodies, gravity: [0.1, 0.2, -1.0], payload_kg: 0.0 }),
             base_tilt: Some(BaseTilt { rad: [0.3, -0.2], joints: 7 }),
             base_offset: Some(BaseOffset { mm: [12.0, -7.0], joints: 7 }),
         };
@@ -200,7 +200,10 @@ mod tests {
         let q_rad: Vec<f64> = (0..7 * 19).map(|i| (i as f64 * 0.618).fract() * 6.0 - 3.0).collect();
         let warmth_k: Vec<f64> = (0..19).map(|i| f64::from(i) - 4.0).collect();
         let approach: Vec<f64> = (0..7 * 19).map(|i| f64::from((i * 5 + i / 7) % 3 - 1)).collect();
-        let angles = Angles { q_rad: &q_rad, conditions: Conditions { warmth_k: &warmth_k, approach: &approach } };
+        let payload: Vec<f64> =
+            (0..4 * 19).map(|i| (f64::from(i) * 0.37).fract() * [2.0, 9.0, -30.0, 40.0][i as usize % 4]).collect();
+        let conditions = Conditions { warmth_k: &warmth_k, approach: &approach, payload: &payload };
+        let angles = Angles { q_rad: &q_rad, conditions };
         for (arm, &level) in arms().iter().flat_map(|arm| LEVELS.iter().map(move |level| (arm, level))) {
             let (chain, tip) = (Chain::new(arm), arm.probes()[0].tip_mm);
             let mut scratch = vec![0.0; scratch_len(&chain)];

@@ -16,6 +16,5 @@ mod scene;
 mod stated;
 mod touched;
 mod weigh;
-mod whitening;
 
 pub(super) use stated::KIND;

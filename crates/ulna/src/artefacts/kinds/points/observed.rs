@@ -59,8 +59,8 @@ impl Observed<3> for Points {
         (self.weights().at(row).norm_squared() / 3.0).sqrt()
     }
 
-    fn of_its_own(&self, group: &Group, row: usize) -> f64 {
-        self.of_its_own[group.touches.feature[row]]
+    fn variance_mm2(&self, group: &Group, row: usize, noise: &Noise) -> f64 {
+        noise.seat_mm.powi(2) + self.of_its_own[group.touches.feature[row]]
     }
 
     fn recalibrate(&mut self, group: &Group, truth: &[f64], calibrated: &[f64]) {

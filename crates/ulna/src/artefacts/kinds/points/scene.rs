@@ -2,11 +2,11 @@
 
 use super::placement::Touch;
 use super::touched::Points;
-use super::whitening::Whitening;
 use crate::artefacts::model::At;
 use crate::artefacts::placed::{Group, Scene};
 use crate::artefacts::rows::MOST_OWN;
 use crate::artefacts::stated::Frame;
+use crate::artefacts::whitening::Whitening;
 use crate::simd::Columns;
 use nalgebra::{Isometry3, Vector3};
 

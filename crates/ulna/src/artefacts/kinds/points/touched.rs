@@ -2,11 +2,11 @@
 
 use super::features::Move;
 use super::placement::{Placement, Touch};
-use super::whitening::Whitening;
 use crate::artefacts::dimension::Dimension;
 use crate::artefacts::placed::Group;
 use crate::artefacts::stated::Frame;
 use crate::artefacts::touches::Touches;
+use crate::artefacts::whitening::Whitening;
 use crate::simd::Columns;
 use nalgebra::{Isometry3, Vector3};
 use std::ops::Range;

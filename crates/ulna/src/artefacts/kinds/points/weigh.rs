@@ -1,10 +1,10 @@
 //! The weight of each touch for the stated noise: what the encoders' noise does at the tip, the seat's, and the feature's.
 
-use super::whitening::Whitening;
 use crate::artefacts::at_tips::{AT_ONCE, AtTips, whitener};
 use crate::artefacts::model::Model;
 use crate::artefacts::noise::Noise;
 use crate::artefacts::touches::Touches;
+use crate::artefacts::whitening::Whitening;
 use crate::simd::Columns;
 
 /// For the stated noise at these parameters; without noise every reading weighs one.

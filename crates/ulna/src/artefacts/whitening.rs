@@ -1,13 +1,13 @@
 //! Weights of touches: the inverse root of each reading's covariance.
 
-use crate::artefacts::tile::Directions;
+use super::tile::Directions;
 use crate::simd::{Columns, Lanes};
 use nalgebra::Matrix3;
 use pulp::Simd;
 
 /// `W` with `WᵀW = Σ⁻¹`, lower triangular.
 #[derive(Debug, Clone)]
-pub(super) enum Whitening {
+pub(in crate::artefacts) enum Whitening {
     /// The same in all directions, for all readings.
     Same(f64),
     /// The same in all directions, for each reading: one column.
@@ -75,7 +75,7 @@ impl Directions for Whitening {
     const COUNT: usize = 3;
 
     #[inline(always)]
-    fn direction<S: Simd>(&self, simd: S, component: usize, k: usize) -> [Lanes<S>; 3] {
+    fn direction<S: Simd>(&self, simd: S, _: usize, component: usize, k: usize) -> [Lanes<S>; 3] {
         let mut direction = [Lanes::splat(simd, 0.0); 3];
         match self {
             Whitening::Same(w) => direction[component] = Lanes::splat(simd, *w),
