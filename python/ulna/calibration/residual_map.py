@@ -69,6 +69,7 @@ class ResidualMap:
     groups: int
     readings: int
     joints: list[JointMap]
+    """Those that turn."""
 
     @property
     def missing(self) -> list[int]:
@@ -101,7 +102,8 @@ def residual_map(study: Study, arm: Arm, fitted: _core.Fitted) -> ResidualMap:
     noise = float(np.mean(seen.residual_mm**2))
     confidence = 1.0 - (1.0 - CONFIDENCE) / arm.n
     needed = float(student(len(groups) - 1, confidence))
-    joints = [_of_joint(seen, joint, groups, noise, needed) for joint in range(arm.n)]
+    turning = np.flatnonzero(~arm.slides).tolist()
+    joints = [_of_joint(seen, joint, groups, noise, needed) for joint in turning]
     return ResidualMap(found[0], len(groups), len(seen.q_rad), joints)
 
 
