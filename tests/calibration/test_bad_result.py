@@ -52,9 +52,19 @@ def drop(*keys: Any) -> Callable[[dict[str, Any]], None]:
     return change
 
 
+def parameters(folder: Path, whole: dict[str, Any]) -> list[dict[str, Any]]:
+    """As the arm and the names of the covariance have them."""
+    arm, free = Arm.load(folder / "arm.toml"), whole["covariance"]["names"]
+    rows = zip(arm.parameter_names, arm.parameter_units, arm.parameters.tolist(), strict=True)
+    return [
+        {"name": name, "unit": unit, "value": value, "u": None, "status": "fitted" if name in free else "held"}
+        for name, unit, value in rows
+    ]
+
+
 def measured(folder: Path, whole: dict[str, Any]) -> Any:
     path = folder / "result.json"
-    path.write_text(json.dumps(whole))
+    path.write_text(json.dumps({"parameters": parameters(folder, whole)} | whole))
     (folder / "q.csv").write_text("q1,q2,q3\n0.1,0.2,0.3\n")
     return ulna.measure(path, folder / "q.csv", "bent").table
 
@@ -159,7 +169,7 @@ def test_why_no_uncertainty_can_be_given_is_told(tmp_path: Path) -> None:
     ):
         whole["fit"] = fit
         path = tmp_path / "result.json"
-        path.write_text(json.dumps(whole))
+        path.write_text(json.dumps(whole | {"parameters": parameters(tmp_path, whole)}))
         (note,) = ulna.measure(path, np.zeros((1, 3)), "bent").notes
         assert said in note
         with pytest.raises(UlnaInputError) as caught:
