@@ -8,13 +8,17 @@ from pydantic import Discriminator, Field, Tag
 
 from ulna.arm.effects.effects import Extra
 from ulna.arm.payload import PayloadTable
-from ulna.arm.stated import PositiveEach
+from ulna.arm.stated import PositiveEach, each_kind
 from ulna.artefacts.kinds import ArtefactTable
 from ulna.formats.models import Strict, table_or_plain
 from ulna.formats.numbers import Positive
 from ulna.formats.units import Units
 from ulna.study.data import Loss, Method
 from ulna.study.readings.columns import ReadingsEntry
+
+Extras = Annotated[
+    Annotated[Literal["auto"], Tag("<all>")] | Annotated[list[Extra], Tag("<each>")], Discriminator(each_kind)
+]
 
 
 class NoiseTable(Strict):
@@ -51,7 +55,7 @@ class FittedTable(Strict):
     """How residuals count that are far off: by their squares (none), or less."""
     start: Literal["given", "search"] = "given"
     """"search": the zero offsets are not known, find them."""
-    extras: list[Extra] | Literal["auto"] = Field(default_factory=list)
+    extras: Extras = Field(default_factory=list)
     """Blocks of the model beyond geometry; each is judged by readings left out. "auto": blocks, orders of harmonics and
     priors are chosen by readings left out."""
     harmonics: list[Annotated[int, Field(ge=1, le=100)]] = Field(default_factory=lambda: [1, 2], min_length=1)
