@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import polars as pl
@@ -13,7 +14,9 @@ from tests.small_study import says
 import ulna
 from ulna.arm.attitudes import attitudes
 from ulna.artefacts.mounting import mounting
-from ulna.artefacts.orientation import WAYS, target
+from ulna.artefacts.orientation import Rotation as Way
+from ulna.artefacts.orientation import target
+from ulna.geometry.rotation import SEQUENCES
 
 MOUNT = Rotation.from_rotvec([0.7, -1.1, 0.4])
 STANDS = Rotation.from_rotvec([[0.2, 1.4, -0.3], [-2.0, 0.1, 0.5]])
@@ -90,7 +93,11 @@ def test_the_last_link_is_turned_as_the_chain_says(folder: Path) -> None:
     np.testing.assert_allclose(found, frames_by_hand(arm, q_rad).as_matrix(), atol=1e-13)
 
 
-@pytest.mark.parametrize("way", WAYS)
+def test_every_order_of_turns_can_be_said() -> None:
+    assert get_args(Way) == ("vector", "quaternion", *SEQUENCES)
+
+
+@pytest.mark.parametrize("way", get_args(Way))
 @pytest.mark.parametrize("unit", ["rad", "deg"])
 def test_every_way_of_writing_says_the_same(folder: Path, way: str, unit: str) -> None:
     """Exact orientations leave nothing, and the mount is found from nothing."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from tests.calibration.test_extras_judged import study_of
 from tests.cli_runs import platinum
+from tests.simulations import write
 
 import ulna
 from ulna.arm.arm import Arm
@@ -48,6 +49,18 @@ def test_nothing_is_found_where_nothing_is_and_where_the_model_has_it() -> None:
     fitted = mapped(erring(3, 2, 2e-4), extras=["encoder-harmonics"], harmonics=[1, 2], judge_extras=False)
     assert fitted.missing == []
     assert "nothing that follows a single joint" in said(fitted)
+
+
+def test_orientations_are_no_places(tmp_path: Path) -> None:
+    """They have three numbers as well, of which no joint's lever moves one by a millimetre."""
+    pytest.importorskip("sklearn", reason="the extra judge is not installed")
+    features = "{ a = [0, 0, 0], b = [250, 0, 0], c = [0, 180, 0] }"
+    plate = f"[artefact.plate]\nkind = 'points'\nplacements = 6\ntouches = 3\nfeatures = {features}\n"
+    turns = "[artefact.target]\nkind = 'orientation'\nrotation = 'vector'\nu = 2e-5\n"
+    study = ulna.simulate(write(tmp_path, plate + turns)).study
+    found = ulna.calibrate(study, judge=True).residual_map
+    assert found is not None
+    assert found.readings == sum(len(each) for each in study.readings if each.rotation_rad is None)
 
 
 def test_it_is_in_the_file(tmp_path: Path) -> None:

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from ulna.geometry.rigid import rotations
 from ulna.geometry.rotation import (
     SEQUENCES,
     matrices_of_angles,
     matrices_of_quaternions,
     matrices_of_vectors,
-    nearest_rotation,
     vectors_of_matrices,
 )
 
@@ -61,4 +61,4 @@ def test_the_nearest_rotation() -> None:
     for _ in range(20):
         a, b = rng.standard_normal((2, 10, 3))
         expected = Rotation.align_vectors(a, b)[0].as_matrix()
-        np.testing.assert_allclose(nearest_rotation(a.T @ b), expected, atol=1e-9)
+        np.testing.assert_allclose(rotations((a.T @ b)[None])[0], expected, atol=1e-9)

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ulna.geometry.rotation import nearest_rotation, vectors_of_matrices
+from ulna.geometry.rigid import rotations
+from ulna.geometry.rotation import vectors_of_matrices
 from ulna.ground.arrays import F64, I64
 
 _MOST_ROUNDS = 200
@@ -46,8 +47,8 @@ def mounting(held: F64, seen: F64, code: I64, free: bool, mount: F64 | None = No
     found = mount if mount is not None else (_by_turns(held, seen, standings) if free else _best(held, seen))
     for _ in range(_MOST_ROUNDS):
         if free:
-            for number, rows in enumerate(standings):
-                frames[number] = nearest_rotation((held[rows] @ found @ np.swapaxes(seen[rows], 1, 2)).sum(axis=0))
+            turned = held @ found @ np.swapaxes(seen, 1, 2)
+            frames = rotations(np.stack([turned[rows].sum(axis=0) for rows in standings]))
         if known:
             break
         better = _best(held, frames[code] @ seen)
@@ -60,7 +61,7 @@ def mounting(held: F64, seen: F64, code: I64, free: bool, mount: F64 | None = No
 
 def _best(held: F64, seen: F64) -> F64:
     """M of targets seen from the base frame."""
-    return nearest_rotation((np.swapaxes(held, 1, 2) @ seen).sum(axis=0))
+    return _nearest((np.swapaxes(held, 1, 2) @ seen).sum(axis=0))
 
 
 def _by_turns(held: F64, seen: F64, standings: list[I64]) -> F64:
@@ -72,4 +73,10 @@ def _by_turns(held: F64, seen: F64, standings: list[I64]) -> F64:
             saw.append(vectors_of_matrices(np.swapaxes(seen[others], 1, 2) @ seen[rows]))
     by_arm, by_eye = np.concatenate(made), np.concatenate(saw)
     sure = (np.linalg.norm(by_arm, axis=1) < _HALF_TURN_RAD) & (np.linalg.norm(by_eye, axis=1) < _HALF_TURN_RAD)
-    return nearest_rotation(by_arm[sure].T @ by_eye[sure])
+    return _nearest(by_arm[sure].T @ by_eye[sure])
+
+
+def _nearest(cross: F64) -> F64:
+    """(3, 3): the rotation of one set."""
+    found: F64 = rotations(cross[None])[0]
+    return found

@@ -25,23 +25,24 @@ from ulna.artefacts.tables import Place, StatedTable, TouchedTable
 from ulna.artefacts.touching import Touches, Touching
 from ulna.formats.numbers import Positive, Uncertainty
 from ulna.formats.units import RAD_PER
-from ulna.geometry.rotation import SEQUENCES, matrices_of_vectors, vectors_of_matrices
+from ulna.geometry.rotation import matrices_of_vectors, vectors_of_matrices
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 
 AXES = ("rx", "ry", "rz")
 LEVER_MM = 1000.0
 """At which an angle is told as a length: mrad as mm."""
-WAYS = ("vector", "quaternion", *SEQUENCES)
-"""How rotations may be written."""
+Rotation = Literal[
+    "vector", "quaternion", "xyz", "xzy", "yxz", "yzx", "zxy", "zyx", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"
+]
+"""How it may be written: the orders of turns are those of `ulna.geometry.rotation.SEQUENCES`."""
 
 
 @dataclass(frozen=True)
 class Target:
     """What is stated of a target and of who sees it."""
 
-    rotation: str
-    """One of `WAYS`."""
+    rotation: Rotation
     rad_per: float
     """rad in one unit of its columns."""
     u_rad: float
@@ -72,9 +73,7 @@ class OrientationTable(StatedTable):
     """Orientations of a target on the last link, as an instrument sees them, one a row."""
 
     kind: Literal["orientation"]
-    rotation: Literal[
-        "vector", "quaternion", "xyz", "xzy", "yxz", "yzx", "zxy", "zyx", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"
-    ]
+    rotation: Rotation
     """How it is written: "vector", the axis times the angle, in columns rx, ry, rz; "quaternion", in rw, rx, ry, rz; or
     angles about x, y and z in rx, ry, rz, in the order in which they turn: "xyz" about axes that stay, "XYZ" about axes
     that turn along."""

@@ -183,7 +183,7 @@ class _Turns(Sequence[Any]):
     def __getitem__(self, number: Any) -> Any:
         name, path = self._named[number]
         folder = self._out / name
-        return _stopping_none(lambda: self._turn(path, folder))
+        return _answer_of(lambda: self._turn(path, folder))
 
     def _turn(self, path: Path, folder: Path) -> Study | _Done:
         study = _load(path)
@@ -192,7 +192,7 @@ class _Turns(Sequence[Any]):
         return study if before is None else _Done(before)
 
 
-def _stopping_none(work: Callable[[], Any]) -> Any:
+def _answer_of(work: Callable[[], Any]) -> Any:
     """What comes of one study; a message where something is wrong with it, whatever that is."""
     try:
         return work()
@@ -217,7 +217,7 @@ def _calibrate(study: Study | _Done | str) -> Result | _Done | str:
         return study
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)
-        found: Result | str = _stopping_none(lambda: calibrate(study))
+        found: Result | str = _answer_of(lambda: calibrate(study))
         return found
 
 
@@ -233,7 +233,7 @@ def _kept(name: str, answer: Result | _Done | str, folder: Path, force: bool) ->
         result.save(folder, force=force)
         return _calibrated(name, result, done_before=False)
 
-    saved = _stopping_none(save)
+    saved = _answer_of(save)
     return _refused(name, saved) if isinstance(saved, str) else saved
 
 

@@ -17,6 +17,8 @@ from ulna.arm.covariance import ParameterCovariance
 from ulna.artefacts.artefact import features_mm
 from ulna.artefacts.readings import Readings
 from ulna.calibration.touched import touched
+from ulna.geometry.rigid import rotations
+from ulna.geometry.rotation import cross_matrices
 from ulna.ground.arrays import F64, I64
 from ulna.study.data import Noise, StudyData
 
@@ -109,7 +111,7 @@ class _Scene:
         origin = middle - rotation @ centre
         lever = features @ rotation.transpose(0, 2, 1)
         shift = np.broadcast_to(np.eye(3), (*rows.shape, 3, 3))
-        columns = np.concatenate([shift, -_cross(lever) @ _turns(rotation, spread, known)[:, None]], axis=3)
+        columns = np.concatenate([shift, -cross_matrices(lever) @ _turns(rotation, spread, known)[:, None]], axis=3)
         u = self._u(columns, by_parameters, weights)
         turned = None if u is None or not known else np.sqrt(np.linalg.eigvalsh(u[:, 3:, 3:])[:, -1])
         line = rotation @ _along(features) if known == 1 else None
@@ -161,18 +163,17 @@ def _rotations(features: F64, stood: F64, known: int) -> F64:
     the smallest such."""
     if known == 0:
         return np.broadcast_to(np.eye(3), (len(stood), 3, 3))
-    u, _, vt = np.linalg.svd(stood.transpose(0, 2, 1) @ features)
-    if known == 1:
-        return _smallest(vt[:, 0], u[:, :, 0])
-    proper = np.broadcast_to(np.eye(3), u.shape).copy()
-    proper[:, 2, 2] = np.linalg.det(u @ vt)
-    return np.asarray(u @ proper @ vt)
+    cross = stood.transpose(0, 2, 1) @ features
+    if known > 1:
+        return rotations(cross)
+    u, _, vt = np.linalg.svd(cross)
+    return _smallest(vt[:, 0], u[:, :, 0])
 
 
 def _smallest(a: F64, b: F64) -> F64:
     """(M, 3, 3): the smallest rotation that takes a unit vector (M, 3) to another; a half turn about any axis across
     it where they are opposite."""
-    skew = _cross(np.cross(a, b))
+    skew = cross_matrices(np.cross(a, b))
     cosine = np.einsum("mi,mi->m", a, b)[:, None, None]
     opposite = cosine < -1.0 + 1e-12
     found = np.eye(3) + skew + skew @ skew / np.where(opposite, 1.0, 1.0 + cosine)
@@ -203,11 +204,3 @@ def _along(features: F64) -> F64:
     """Unit vector from the feature nearest to the origin to the farthest."""
     far = features[np.argsort(np.linalg.norm(features, axis=1))[[0, -1]]]
     return np.asarray((far[1] - far[0]) / np.linalg.norm(far[1] - far[0]))
-
-
-def _cross(a: F64) -> F64:
-    """[a]×, (…, 3, 3) of (…, 3)."""
-    found = np.zeros((*a.shape, 3))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[..., i, j], found[..., j, i] = -a[..., k], a[..., k]
-    return found

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.artefacts.kinds import kind_of
 from ulna.calibration.choosing.groups import codes_of
 from ulna.ground.arrays import F64, I64
 from ulna.ground.quantiles import student
@@ -158,7 +159,8 @@ def _seen(study: Study, arm: Arm, fitted: _core.Fitted, codes: list[I64]) -> _Se
     parts = []
     for number, (readings, code) in enumerate(zip(study.readings, codes, strict=True)):
         residual = fitted.residuals(number)
-        if residual.shape[1] != 3:
+        # an orientation has three numbers too, and none of them is of the tip
+        if residual.shape[1] != 3 or kind_of(readings.artefact).turned:
             continue
         said = conditions_of(study, arm, readings)[0]
         q = np.ascontiguousarray(readings.q_rad)

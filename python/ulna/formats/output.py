@@ -110,7 +110,7 @@ def output_folder(
 
 def _staged_folder(place: Path) -> Path:
     """Beside the folder; within it where that is another disk, or nobody may write beside it. Raises OSError."""
-    staging = _staging(place, place.name)
+    staging = _staging(place.parent, place.name)
     try:
         if place.is_dir() and os.path.ismount(place):
             raise OSError(errno.EXDEV, os.strerror(errno.EXDEV))
@@ -120,7 +120,7 @@ def _staged_folder(place: Path) -> Path:
         UNDER_WAY.discard(staging)
         if not place.is_dir() or _no_room(error):
             raise
-    staging = _staging(place / "within", place.name)
+    staging = _staging(place, place.name)
     staging.mkdir(mode=0o700)
     return staging
 
@@ -140,7 +140,7 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
         raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
     if path.exists() and not force:
         raise UlnaInputError(f"{path}: exists already and is not overwritten. Name another file, or give --force.")
-    staged = _staging(path, path.stem, path.suffix)
+    staged = _staging(path.parent, path.stem, path.suffix)
     try:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -179,10 +179,10 @@ def _appeared(path: Path) -> UlnaInputError:
     )
 
 
-def _staging(target: Path, stem: str, suffix: str = "") -> Path:
-    """A name beside the target that nobody else has. Known as under way before anything is made there, so that an
+def _staging(folder: Path, stem: str, suffix: str = "") -> Path:
+    """A name in a folder that nobody else has. Known as under way before anything is made there, so that an
     interrupt at any moment leaves nothing behind."""
-    staging = target.parent / f".{stem}-{secrets.token_hex(6)}.partial{suffix}"
+    staging = folder / f".{stem}-{secrets.token_hex(6)}.partial{suffix}"
     UNDER_WAY.add(staging)
     return staging
 

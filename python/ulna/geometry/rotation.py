@@ -1,4 +1,4 @@
-"""Rotations as people and instruments write them, as matrices; and the rotation that fits many pairs best.
+"""Rotations as people and instruments write them, as matrices.
 
 A rotation vector is the axis times the angle. Angles about axes are named by the order in which they turn, as SciPy
 does: "xyz" about axes that stay, "XYZ" about axes that turn along, so that "XYZ" is Rx Ry Rz and "xyz" Rz Ry Rx.
@@ -90,10 +90,3 @@ def matrices_of_quaternions(quaternions: F64) -> F64:
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
     return np.moveaxis(np.array(rows), -1, 0)
-
-
-def nearest_rotation(matrix: F64) -> F64:
-    """(3, 3): the rotation R that makes the trace of Rᵀ · matrix largest (Wahba's problem; Kabsch 1976)."""
-    u, _, vt = np.linalg.svd(matrix)
-    found: F64 = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
-    return found

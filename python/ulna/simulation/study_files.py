@@ -15,6 +15,7 @@ from ulna.arm.file import arm_toml
 from ulna.arm.payload import Payload
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.orientation import AXES
 from ulna.artefacts.readings import Readings
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.arrays import F64
@@ -97,7 +98,7 @@ def readings_table(
     if measured is not None and group.artefact.length_mm is None and group.length_mm is not None:
         columns[measured] = group.length_mm
     if group.rotation_rad is not None:
-        columns |= {name: group.rotation_rad[:, k] for k, name in enumerate(("rx", "ry", "rz"))}
+        columns |= {name: group.rotation_rad[:, k] for k, name in enumerate(AXES)}
     for condition, name, said in group.conditions():
         columns |= condition.written(said, name, payloads)
     return pl.DataFrame(columns)

@@ -3,7 +3,7 @@
 use super::checks::{check_rows, check_stated};
 use super::dimension::Dimension;
 use super::readings::Readings;
-use super::stated::{Column, Rows, Size, Stated};
+use super::stated::{Column, Frame, Rows, Size, Stated};
 use crate::arm::{Arm, Unit};
 use crate::error::{Error, Result};
 
@@ -119,6 +119,16 @@ impl<'a> Statement<'a> {
     /// What cannot both be.
     pub fn contradiction(&self, why: String) -> Error {
         Error::Contradiction { artefact: self.stated.name.into(), why }
+    }
+
+    /// The rows of what stands in that frame: those of placements, or, in the arm's own, of none.
+    pub fn rows_in(&self, frame: Frame) -> Result<Rows<'a>> {
+        match frame {
+            Frame::Free if self.rows.placement.is_none() => Err(self.missing(Column::Placement.name())),
+            Frame::Free => Ok(*self.rows),
+            // nothing is to be placed
+            Frame::Arm => Ok(Rows { placement: None, ..*self.rows }),
+        }
     }
 
     /// A dimension as it is stated.

@@ -1,5 +1,6 @@
 //! Weights of touches: the inverse root of each reading's covariance.
 
+use super::noise::Weighing;
 use super::tile::Directions;
 use crate::simd::{Columns, Lanes};
 use nalgebra::Matrix3;
@@ -17,9 +18,22 @@ pub(in crate::artefacts) enum Whitening {
 }
 
 impl Whitening {
+    /// Of `count` readings, told apart by direction or not.
+    pub fn weighed(self, how: Weighing, count: usize) -> Whitening {
+        match how {
+            Weighing::Full => self,
+            Weighing::Even => self.even(count),
+        }
+    }
+
+    /// Root of the weight of one reading, equal in effect where it differs by direction.
+    pub fn weight(&self, row: usize) -> f64 {
+        (self.at(row).norm_squared() / 3.0).sqrt()
+    }
+
     /// One weight for all: that of the mean variance of `count` readings.
-    pub fn even(self, count: usize) -> Whitening {
-        let variance = |row: usize| 3.0 / self.at(row).norm_squared();
+    fn even(self, count: usize) -> Whitening {
+        let variance = |row: usize| self.weight(row).powi(-2);
         let mean = (0..count).map(variance).sum::<f64>() / count.max(1) as f64;
         Whitening::Same(mean.sqrt().recip())
     }

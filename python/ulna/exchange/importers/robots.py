@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ulna.arm.arm import Arm
 from ulna.arm.frames.modified import from_modified
@@ -36,39 +37,34 @@ def panda() -> Arm:
 
 
 def ur10() -> Arm:
-    """Universal Robots UR10e-class arm of the data set, six axes, with a tracker's target 109 mm before the flange.
-
-    The maker's Denavit–Hartenberg parameters are the upper-joint form already. Axes 2, 3 and 4 are parallel: joints 2
-    and 3 are Hayati joints, which have a tilt (beta) in place of an offset along the axis.
-    """
-    joints = (
-        Joint(0.0, _QUARTER, 0.0, 128.0),
-        Joint(0.0, 0.0, -612.7, model="hayati"),
-        Joint(0.0, 0.0, -571.6, model="hayati"),
-        Joint(0.0, _QUARTER, 0.0, 163.9),
-        Joint(0.0, -_QUARTER, 0.0, 115.7),
-        Joint(),
-    )
-    flange_mm, target_mm = 92.2, 109.0
-    return Arm("Universal Robots UR10", joints, {"target": Probe(0.0, 0.0, flange_mm + target_mm)})
+    """Universal Robots UR10e-class arm of the data set, six axes, with a tracker's target 109 mm before the flange."""
+    return _universal("UR10", (128.0, -612.7, -571.6, 163.9, 115.7), flange_mm=92.2, target_mm=109.0)
 
 
 def ur5() -> Arm:
     """Universal Robots UR5, six axes, with a tracker's reflector 31 mm before the flange.
 
-    Denavit–Hartenberg parameters of series 3 (manual of the CB3 controller, table C.3); axes 2, 3 and 4 are parallel,
-    as on the UR10.
+    Denavit–Hartenberg parameters of series 3 (manual of the CB3 controller, table C.3).
     """
+    return _universal("UR5", (89.159, -425.0, -392.25, 109.15, 94.65), flange_mm=82.3, target_mm=31.0)
+
+
+def _universal(name: str, links_mm: Sequence[float], flange_mm: float, target_mm: float) -> Arm:
+    """links_mm: d1, a2, a3, d4, d5.
+
+    The maker's Denavit–Hartenberg parameters are the upper-joint form already. Axes 2, 3 and 4 are parallel: joints 2
+    and 3 are Hayati joints, which have a tilt (beta) in place of an offset along the axis.
+    """
+    d1_mm, a2_mm, a3_mm, d4_mm, d5_mm = links_mm
     joints = (
-        Joint(0.0, _QUARTER, 0.0, 89.159),
-        Joint(0.0, 0.0, -425.0, model="hayati"),
-        Joint(0.0, 0.0, -392.25, model="hayati"),
-        Joint(0.0, _QUARTER, 0.0, 109.15),
-        Joint(0.0, -_QUARTER, 0.0, 94.65),
+        Joint(0.0, _QUARTER, 0.0, d1_mm),
+        Joint(0.0, 0.0, a2_mm, model="hayati"),
+        Joint(0.0, 0.0, a3_mm, model="hayati"),
+        Joint(0.0, _QUARTER, 0.0, d4_mm),
+        Joint(0.0, -_QUARTER, 0.0, d5_mm),
         Joint(),
     )
-    flange_mm, target_mm = 82.3, 31.0
-    return Arm("Universal Robots UR5", joints, {"target": Probe(0.0, 0.0, flange_mm + target_mm)})
+    return Arm(f"Universal Robots {name}", joints, {"target": Probe(0.0, 0.0, flange_mm + target_mm)})
 
 
 def wam() -> Arm:

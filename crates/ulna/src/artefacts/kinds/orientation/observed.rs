@@ -66,10 +66,7 @@ impl Observed<3> for Attitudes {
             }
             Whitening::Each(whitening)
         };
-        self.whitening = match how {
-            Weighing::Full => full,
-            Weighing::Even => full.even(group.touches.len()),
-        };
+        self.whitening = full.weighed(how, group.touches.len());
     }
 
     fn discount(&mut self, factors: Option<Vec<f64>>) {
@@ -77,7 +74,7 @@ impl Observed<3> for Attitudes {
     }
 
     fn weight(&self, row: usize) -> f64 {
-        (self.weights().at(row).norm_squared() / 3.0).sqrt()
+        self.weights().weight(row)
     }
 
     /// The instrument's: a seat holds no target.

@@ -7,7 +7,9 @@ use crate::artefacts::model::At;
 use crate::artefacts::placed::{Group, Scene};
 use crate::artefacts::rows::MOST_OWN;
 use crate::artefacts::stated::Frame;
+use crate::artefacts::tile::Directions;
 use crate::artefacts::whitening::Whitening;
+use crate::simd::Columns;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// All of them, each instrument's frame found.
@@ -32,7 +34,7 @@ struct Link {
 impl<'a> Seen<'a> {
     pub fn new(attitudes: &'a Attitudes, group: &'a Group, at: At) -> Seen<'a> {
         let (touches, weights) = (&group.touches, attitudes.weights());
-        let points = [[0.0; 3], [ARM_MM, 0.0, 0.0], [0.0, ARM_MM, 0.0]].map(|away| touches.points(at.model, away));
+        let points: Vec<Columns> = Turns::POINTS_MM.iter().map(|&away| touches.points(at.model, away)).collect();
         let link = |row: usize| {
             let at = |point: usize| Vector3::from([0, 1, 2].map(|j| points[point].column(j)[row]));
             let (along_x, along_y) = (at(1) - at(0), at(2) - at(0));

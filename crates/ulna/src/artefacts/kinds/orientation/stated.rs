@@ -6,7 +6,7 @@ use crate::artefacts::kind::{Asked, Kind, Statement};
 use crate::artefacts::placed::{Group, Placed};
 use crate::artefacts::readings::Readings;
 use crate::artefacts::standings::Standings;
-use crate::artefacts::stated::{Column, Frame, Rows};
+use crate::artefacts::stated::{Column, Frame};
 use crate::artefacts::touches::Touches;
 use crate::error::Result;
 use nalgebra::{Rotation3, Vector3};
@@ -29,12 +29,7 @@ pub(in crate::artefacts::kinds) const KIND: Kind = Kind {
 
 fn readings(statement: &Statement) -> Result<Box<dyn Readings>> {
     let frame = statement.stated.frame.unwrap_or(Frame::Free);
-    let rows = match frame {
-        Frame::Free if statement.rows.placement.is_none() => return Err(statement.missing(Column::Placement.name())),
-        Frame::Free => *statement.rows,
-        // nothing is to be placed
-        Frame::Arm => Rows { placement: None, ..*statement.rows },
-    };
+    let rows = statement.rows_in(frame)?;
     let lever = statement.size("lever");
     if lever.is_some_and(|lever| lever.fitted || lever.u > 0.0) {
         let why = "its lever says how an angle counts beside a length; there is nothing uncertain about it".into();

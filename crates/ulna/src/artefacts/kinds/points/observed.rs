@@ -45,10 +45,7 @@ impl Observed<3> for Points {
 
     fn weigh(&mut self, group: &Group, at: At, noise: Option<&Noise>, how: Weighing) {
         let full = for_noise(&group.touches, &self.of_its_own, at.model, noise);
-        self.whitening = match how {
-            Weighing::Full => full,
-            Weighing::Even => full.even(group.touches.len()),
-        };
+        self.whitening = full.weighed(how, group.touches.len());
     }
 
     fn discount(&mut self, factors: Option<Vec<f64>>) {
@@ -56,7 +53,7 @@ impl Observed<3> for Points {
     }
 
     fn weight(&self, row: usize) -> f64 {
-        (self.weights().at(row).norm_squared() / 3.0).sqrt()
+        self.weights().weight(row)
     }
 
     fn variance_mm2(&self, group: &Group, row: usize, noise: &Noise) -> f64 {

@@ -26,12 +26,7 @@ pub(in crate::artefacts::kinds) const KIND: Kind = Kind {
 
 fn readings(statement: &Statement) -> Result<Box<dyn Readings>> {
     let frame = statement.stated.frame.unwrap_or(Frame::Free);
-    let rows = match frame {
-        Frame::Free if statement.rows.placement.is_none() => return Err(statement.missing(Column::Placement.name())),
-        Frame::Free => *statement.rows,
-        // nothing is to be placed
-        Frame::Arm => Rows { placement: None, ..*statement.rows },
-    };
+    let rows = statement.rows_in(frame)?;
     let features_mm: Vec<Vector3<f64>> =
         statement.stated.features_mm.unwrap_or_default().iter().map(|&at| at.into()).collect();
     let mut counts = vec![0; features_mm.len()];
