@@ -43,7 +43,10 @@ DAMAGED: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     "no provenance": (lambda result: result.pop("provenance"), "'provenance' is missing"),
     "no version": (lambda result: result["provenance"].pop("version"), "'provenance.version' is missing"),
     "a file without sum": (lambda result: result["provenance"]["files"][1].pop("sha256"), "'provenance.files.2'"),
-    "a text for a number": (lambda result: result["parameters"][1].update(value="1"), "'parameters.2.value'"),
+    "a text for a number": (
+        lambda result: result["parameters"][1].update(value="1"),
+        "'parameters: joint.1.alpha': got '1', expected a number",
+    ),
     "no figures": (lambda result: result["overall"].pop("before"), "'overall.before' is missing"),
     "a text as a figure": (
         lambda result: result["overall"]["after"].update(form_mm="x"),
@@ -53,14 +56,17 @@ DAMAGED: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
         lambda result: result["artefacts"][0].update(length_error_mean_mm="x"),
         "'artefacts.1.length_error_mean_mm': got 'x'",
     ),
-    "another unit": (lambda result: result["parameters"][1].update(unit="deg"), "'parameters.2.unit'"),
+    "another unit": (
+        lambda result: result["parameters"][1].update(unit="deg"),
+        "'parameters: joint.1.alpha': its unit is 'deg', but it is in rad",
+    ),
     "another uncertainty": (
         lambda result: result["parameters"][1].update(u=1e-3),
-        "joint.1.alpha has the uncertainty 0.001, its variance says 4.59",
+        "'parameters: joint.1.alpha': its u is 0.001, but by the covariance in this file 4.59",
     ),
     "an uncertainty out of nothing": (
         lambda result: result["parameters"][0].update(u=1e-3, status="fitted"),
-        "'covariance.names': joint.1.theta0 has an uncertainty but no covariance",
+        "'parameters: joint.1.theta0': its status is 'fitted', but by the covariance in this file it was not free",
     ),
     "no degrees of freedom": (
         lambda result: (without_noise(result), result["fit"].update(degrees_of_freedom=0)),

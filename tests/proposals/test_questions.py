@@ -266,3 +266,7 @@ def test_on_a_terminal_it_asks_until_nothing_is_left(
     assert "got 'stick'" in told
     assert "--parallel: got 9" in told
     assert shown[0].startswith("What was touched? [bar/")
+
+
+def test_orientations_are_not_touched(complete: Answers) -> None:
+    refused(replace(complete, artefact="orientation"), "--artefact: got 'orientation'", "beside places", "[artefact.")
