@@ -25,6 +25,7 @@ from ulna.calibration.provenance import provenance
 from ulna.calibration.residuals import residual_table
 from ulna.calibration.result_file import EvaluatedEntry, EvaluationFile, ProvenanceEntry
 from ulna.calibration.running import run_fit
+from ulna.formats.for_sheets import for_sheets
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.ground.shown import About, Shown
@@ -76,7 +77,7 @@ class Evaluation(Shown):
         with output_folder(folder, FILES, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / "evaluation.json").write_text(text + "\n", encoding="utf-8")
-            self.residuals.write_csv(staging / "residuals.csv")
+            for_sheets(self.residuals).write_csv(staging / "residuals.csv")
 
 
 def evaluate(arm: ArmLike, study: StudyLike, progress: Callable[[str, int, int], None] | None = None) -> Evaluation:

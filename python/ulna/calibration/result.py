@@ -32,6 +32,7 @@ from ulna.calibration.poses import PlacementPose
 from ulna.calibration.residual_map import ResidualMap
 from ulna.calibration.residuals import SCHEMA, from_json_rows, json_rows
 from ulna.calibration.summary import FitSummary, Parameter
+from ulna.formats.for_sheets import for_sheets
 from ulna.formats.models import fill_json
 from ulna.formats.output import output_folder
 from ulna.formats.toml import check_format, read_json
@@ -190,7 +191,7 @@ class Result(OnDemand, Shown, StandsForArm, StandsForStudy):
             if many:
                 file.residuals_file = write_beside(self.residuals, here / RESIDUALS)
             else:
-                self.residuals.write_csv(here / "residuals.csv")
+                for_sheets(self.residuals).write_csv(here / "residuals.csv")
             with (here / "result.json").open("w", encoding="utf-8") as stream:
                 _write(self, file, stream.write, residuals=not many)
             (here / "arm.toml").write_text(arm_toml(self.arm), encoding="utf-8")

@@ -15,6 +15,7 @@ import numpy as np
 
 import ulna._core as _core
 from ulna.arm.effects.effects import EFFECTS
+from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.readings import Readings
 from ulna.calibration.result import Result
 from ulna.ground.arrays import F64
@@ -57,7 +58,13 @@ def suspicion(study: Study, result: Result) -> Suspicion | None:
 
 
 def _first(group: Readings) -> Readings:
-    return group if len(group) <= _READINGS else group.select(np.arange(_READINGS))
+    """Enough of them to tell a gross fault, of an artefact as it is stated: to fit each of its features takes long."""
+    known = replace(group.artefact, fitted=group.artefact.fitted and not _uncertain(group.artefact))
+    return replace(group if len(group) <= _READINGS else group.select(np.arange(_READINGS)), artefact=known)
+
+
+def _uncertain(artefact: Artefact) -> bool:
+    return artefact.u_mm > 0.0 or any(artefact.feature_u_mm or ())
 
 
 def _tried(suspected: Suspicion) -> Suspicion | None:

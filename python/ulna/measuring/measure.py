@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from ulna.arm.data import Loads
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, as_arm
+from ulna.formats.for_sheets import for_sheets
 from ulna.formats.frames import is_frame
 from ulna.formats.layout import Layout
 from ulna.formats.output import new_file, refuse_inputs
@@ -173,7 +174,7 @@ def measure_to_stream(job: MeasureJob, file: BinaryIO, json_lines: bool = False)
         job.check()
     for number, frame in enumerate(job.frames()):
         # as text, so that a reader who has gone away is noticed as Python notices it
-        text = frame.write_ndjson() if json_lines else frame.write_csv(include_header=number == 0)
+        text = frame.write_ndjson() if json_lines else for_sheets(frame).write_csv(include_header=number == 0)
         file.write(text.encode())
         if job.coming:
             file.flush()

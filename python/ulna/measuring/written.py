@@ -9,6 +9,7 @@ from typing import Any
 
 import polars as pl
 
+from ulna.formats.for_sheets import for_sheets
 from ulna.formats.output import UNDER_WAY
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import need
@@ -43,7 +44,7 @@ def write_tsv(frames: Iterator[pl.DataFrame], path: Path) -> None:
 def _write_text(frames: Iterator[pl.DataFrame], path: Path, separator: str) -> None:
     with path.open("wb") as file:
         for number, frame in enumerate(frames):
-            frame.write_csv(file, include_header=number == 0, separator=separator)
+            for_sheets(frame).write_csv(file, include_header=number == 0, separator=separator)
 
 
 def write_json_lines(frames: Iterator[pl.DataFrame], path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ulna.arm.given import ArmLike
+from ulna.formats.for_sheets import for_sheets
 from ulna.formats.output import output_folder
 from ulna.formats.units import MM_PER
 from ulna.ground.arrays import Progress
@@ -98,7 +99,7 @@ class Verification(Shown):
         with output_folder(folder, self.files, force) as staging:
             text = json.dumps(self.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
             (staging / FILE).write_text(text + "\n", encoding="utf-8")
-            values_table(self.states).write_csv(staging / TABLE)
+            for_sheets(values_table(self.states)).write_csv(staging / TABLE)
             if len(self.files) > 2:
                 from ulna.verification.plots import draw_lengths
 

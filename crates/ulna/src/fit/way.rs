@@ -28,6 +28,9 @@ const SIGNIFICANT: f64 = 4.0;
 const FAR: f64 = 0.1;
 /// An arm has left its drawing where it is off by so many times what a drawing is known by.
 pub(super) const OFF_DRAWING: f64 = 10.0;
+/// Rounds of weighing may take so many times the steps of one descent, all together: one bad placement can keep each of
+/// them from an end.
+const SETTLING: usize = 5;
 
 /// A fit on its way.
 pub(crate) struct Way<'a> {
@@ -215,12 +218,14 @@ impl<'a> Way<'a> {
         let Some(mut settling) = Settling::new(self.problem, self.free, &pins, how) else {
             return Ok(());
         };
+        let most_steps = report.iterations + SETTLING * self.how.max_iterations;
         loop {
             settling.weigh(self.problem, &self.parameters(), self.monitor)?;
             let before = self.x.clone();
             let again = self.descend()?;
             *report = added(*report, again);
-            if let Some(settled) = settling.ended(&again, &before, &self.x) {
+            let lost = (report.iterations >= most_steps).then_some(false);
+            if let Some(settled) = settling.ended(&again, &before, &self.x).or(lost) {
                 self.factors = settling.factors;
                 if !settled {
                     report.termination = Termination::MaxIterations;
