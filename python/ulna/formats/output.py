@@ -187,11 +187,17 @@ def _staging(folder: Path, stem: str, suffix: str = "") -> Path:
     return staging
 
 
+def _number(error: OSError) -> int | None:
+    """Its errno; Polars and pyarrow have it in their words alone."""
+    told = re.search(r"\(os error (\d+)\)|\[errno (\d+)\]", str(error))
+    return int(told[1] or told[2]) if told else error.errno
+
+
 def _no_room(error: OSError) -> bool:
-    number = re.search(r"\(os error (\d+)\)", str(error))  # as Polars says it, without errno
-    return (int(number[1]) if number else error.errno) in _NO_ROOM
+    return _number(error) in _NO_ROOM
 
 
 def _unwritable(path: Path, error: OSError) -> UlnaInputError:
-    reason = re.sub(r" \(os error \d+\)", "", error.strerror or str(error))
+    number = _number(error)
+    reason = str(error) if number is None else os.strerror(number)
     return UlnaInputError(f"{path}: cannot be written ({reason}). Choose a place with room where you may write.")

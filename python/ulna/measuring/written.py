@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -82,10 +84,12 @@ def write_workbook(frames: Iterator[pl.DataFrame], path: Path) -> None:
     try:
         _fill(sheet, frames)
         book.save(path)
-    except BaseException:
+    except BaseException as error:
         with suppress(Exception):
             sheet.close()
         kept.unlink(missing_ok=True)
+        if found := re.fullmatch(r"IO_(E[A-Z]+)", str(error)):  # as lxml says that the disk is full
+            raise OSError(getattr(errno, found[1], errno.EIO), found[1]) from None
         raise
     finally:
         UNDER_WAY.discard(kept)
