@@ -9,6 +9,7 @@ from __future__ import annotations
 import datetime
 import re
 import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +26,7 @@ from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import is_blank
 from ulna.formats.tables.marks import OLD_OFFICE
 from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
+from ulna.formats.tables.workbook_parts import check_parts
 from ulna.ground.errors import UlnaInputError, nearest
 
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
@@ -147,7 +149,8 @@ def _check_kind(path: Path, start: bytes, what: str) -> None:
     try:
         with zipfile.ZipFile(path) as archive:
             inside = set(archive.namelist())
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+            check_parts(path, archive)
+    except (zipfile.BadZipFile, zlib.error, OSError, ValueError, NotImplementedError) as error:
         raise _unreadable(path, what, error) from None
     if "[Content_Types].xml" in inside and any(re.match(r"xl/.*\.xml", name) for name in inside):
         return
