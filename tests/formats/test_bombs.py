@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import struct
 import zipfile
@@ -17,6 +18,7 @@ import scipy.io
 from tests.foreign_tables import cells
 
 from ulna.documents.pdf.picture_size import MOST_PIXELS, pixels
+from ulna.documents.pdf.svg_size import too_large
 from ulna.formats import toml
 from ulna.formats.layout import Layout
 from ulna.formats.table import read_header, read_table, stream
@@ -202,3 +204,55 @@ def test_a_picture_says_how_large_it_is(kind: str) -> None:
         Image.new("RGB", (300, 200), "green").save(made, format=kind, lossless=True)
         assert pixels(made.getvalue()) == 60_000
     assert MOST_PIXELS > 1_000_000
+
+
+def svg(inside: str) -> bytes:
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">{inside}</svg>'.encode()
+
+
+def doubled(times: int, reference: str) -> str:
+    """Each group draws the one before twice."""
+    groups = (f'<g id="a{k}">{2 * reference.format(k - 1)}</g>' for k in range(1, times))
+    return '<rect id="a0" width="1" height="1"/>' + "".join(groups) + reference.format(times - 1)
+
+
+def vast_png() -> str:
+    return base64.b64encode(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + (30_000).to_bytes(4, "big") * 2).decode()
+
+
+SVG = {
+    "uses": (doubled(40, '<use href="#a{}"/>'), "more than 500000 elements"),
+    "fills": (doubled(40, '<rect fill="url(#a{})"/>'), "more than 500000 elements"),
+    "a long chain": ("".join(f'<g id="a{k}"><use href="#a{k + 1}"/></g>' for k in range(5000)), "more than 500000"),
+    "a picture": (f'<image href="data:image/png;base64,{vast_png()}"/>', "pictures in it of more than 25 million"),
+}
+
+
+@pytest.mark.parametrize("case", SVG)
+def test_an_svg_that_draws_without_end(case: str) -> None:
+    inside, expected = SVG[case]
+    assert expected in (too_large(svg(inside)) or "")
+
+
+def test_an_svg_of_a_logo() -> None:
+    circle = (
+        '<g id="a"><use href="#a"/></g><use href="#a"/><rect fill="url(#b)"/><image href="data:image/png;base64,x"/>'
+    )
+    assert too_large(svg(doubled(10, '<use href="#a{}"/>') + circle)) is None
+    assert too_large(b"<svg") is None
+    assert "entities" in (too_large(b'<!DOCTYPE svg [<!ENTITY a "b">]><svg/>') or "")
+
+
+def test_cells_that_are_merged_again_and_again(tmp_path: Path) -> None:
+    path = tmp_path / "b.xlsx"
+    book = openpyxl.Workbook()
+    for row in [["q1"], *([1.5] for _ in range(50))]:
+        book.active.append(row)
+    book.save(path)
+    merged = "".join(f'<mergeCell ref="A2:A{50 - k % 9}"/>' for k in range(100))
+    rewritten = tmp_path / "c.xlsx"
+    with zipfile.ZipFile(path) as good, zipfile.ZipFile(rewritten, "w", zipfile.ZIP_DEFLATED) as made:
+        for part in good.namelist():
+            more = f"</sheetData><mergeCells>{merged}</mergeCells>".encode()
+            made.writestr(part, good.read(part).replace(b"</sheetData>", more))
+    assert "merged cells lie upon each other" in refused(rewritten)

@@ -10,6 +10,7 @@ from ulna.documents.content.content import Content
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
 from ulna.documents.pdf.picture_size import MOST_PIXELS, pixels
+from ulna.documents.pdf.svg_size import too_large
 from ulna.documents.pdf.text import clean, line, name
 from ulna.documents.sections.laboratory import accreditation, contact
 from ulna.formats.toml import read_bytes
@@ -86,6 +87,9 @@ def logo(content: Content, words: Words) -> dict[str, Any] | None:
     kind = next((kind for begin, kind in _PICTURES.items() if picture.startswith(begin)), None)
     if kind is None and b"<svg" in picture[:2000]:
         kind = "svg"
+        vast = too_large(picture)
+        if vast is not None:
+            raise UlnaInputError(f"{path}: {vast}; expected a logo that can be printed. Save a simpler one.")
     if kind is None:
         raise UlnaInputError(
             f"{path}: is no picture that can be printed; expected PNG, JPEG, GIF, WebP or SVG, as the key "
