@@ -27,8 +27,10 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 from numpy.typing import NDArray
 
-QUIET_S = 8.0
-"""Without a sign of a process that was asked: between two signs it reads a few MB."""
+QUIET_S = 7.0
+"""Without a sign of a process that was asked: between two signs it reads a few MB, or says that it reads more."""
+SLOWEST = 20e6
+"""Bytes a second of the slowest disk: what more is read without a sign."""
 START_S = 60.0
 """To load a library from a slow disk; no file is open yet."""
 _POLL_S = 0.2
@@ -167,6 +169,8 @@ class _Running:
         arrays = [self._taken(np.empty(shape, np.dtype(kind))) for kind, shape in said["arrays"]]
         if said["kind"] == "ready":
             self.rest()
+        elif "reading" in said:
+            self._due = time.monotonic() + self._quiet_s + said["reading"] / SLOWEST
         return Answer(said, arrays)
 
     def rest(self) -> None:

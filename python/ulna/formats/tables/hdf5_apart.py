@@ -222,6 +222,9 @@ def _values(file: Any, question: dict[str, Any], alive: Alive) -> Iterator[None]
     at = first
     while at < last:
         until = min(last, (at // step + 1) * step)
+        reading = (until - at) * _row_bytes(data, axis)
+        if reading > _BAND_BYTES:  # a large block, as a whole
+            alive.say("alive", reading=min(reading, file.id.get_filesize()))
         some = [slice(None)] * len(data.shape)
         some[axis] = slice(at, until)
         values = convert(file, np.asarray(source[tuple(some)]), alive)
