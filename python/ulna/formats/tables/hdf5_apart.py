@@ -26,14 +26,17 @@ _MOST_DIMENSIONS = 64
 _BAND_BYTES = 4 << 20
 _TEXT_BYTES = 256
 """Of a text of any length, in a band."""
-_CACHE_BYTES = 64 << 20
+_CACHE_BYTES = 32 << 20
 """Of decompressed blocks of a data set, so that those that several bands need are decompressed once."""
+_MOST_OPEN = 16
+"""Data sets that are kept open, each with its blocks."""
 _BLOCK_BYTES = 256 << 20
 """Of one block at most: HDF5 decompresses a block as a whole."""
 _LINK = "a link to another file"
 
 _held: dict[str, Any] = {}
-_checked: set[tuple[str, str]] = set()
+_open: dict[tuple[str, str], Any] = {}
+"""Data sets of the file at hand that were checked."""
 
 
 def answer(question: dict[str, Any], alive: Alive) -> Iterator[None]:
@@ -42,15 +45,17 @@ def answer(question: dict[str, Any], alive: Alive) -> Iterator[None]:
     if question["do"] == "hold":
         _held[path] = _opened(path)
     elif question["do"] == "let_go":
+        _open.clear()
         if path in _held:
             _held.pop(path).close()
-        _checked.clear()
     elif path in _held:
         yield from _of(_held[path], question, alive)
     else:
         with _opened(path) as file:
-            yield from _of(file, question, alive)
-        _checked.clear()
+            try:
+                yield from _of(file, question, alive)
+            finally:
+                _open.clear()
 
 
 def _opened(path: str) -> Any:
@@ -179,7 +184,7 @@ def _way(data: Any, way: str) -> dict[str, Any]:
     band = max(1, _BAND_BYTES // row)
     if data.chunks is not None:
         across = -(-data.size // data.shape[axis]) * data.chunks[axis] * data.dtype.itemsize
-        if across > _CACHE_BYTES // 2:
+        if across > _CACHE_BYTES:
             return {"way": way}
         band = max(band, data.chunks[axis]) // data.chunks[axis] * data.chunks[axis]
     return {"way": way, "band": band}
@@ -202,11 +207,15 @@ def _row_bytes(data: Any, axis: int) -> int:
 
 
 def _values(file: Any, question: dict[str, Any], alive: Alive) -> Iterator[None]:
-    data = file[question["place"]]
-    if (file.filename, data.name) not in _checked:
+    key = file.filename, question["place"]
+    data = _open.get(key)
+    if data is None:
+        data = file[question["place"]]
         _check_written(data)
         _check_blocks(data)
-        _checked.add((file.filename, data.name))
+        if len(_open) == _MOST_OPEN:
+            del _open[next(iter(_open))]
+        _open[key] = data
     way, field = question["way"], question.get("field")
     convert = _CONVERT[way]
     source = data if field is None else data.fields(field)
