@@ -127,10 +127,11 @@ def test_no_module_but_those_that_draw_needs_an_extra() -> None:
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, check=True)
     needy = dict(line.split() for line in done.stdout.splitlines())
     draws = re.compile(
-        r"ulna\.ground\.style|ulna\.[\w.]+\.plots?|ulna\.documents\.(pdf|drawn|work_sheet)(\.\w+)?|ulna\.documents\.plotted|ulna\.formats\.tables\.arrow"
+        r"ulna\.ground\.style|ulna\.[\w.]+\.plots?|ulna\.documents\.(pdf|drawn|work_sheet)(\.\w+)?|ulna\.documents\.plotted|"
+        r"ulna\.formats\.tables\.(arrow|hdf5_apart)"
     )
     assert [name for name in needy if not draws.fullmatch(name)] == []
-    assert {package.split(".")[0] for package in needy.values()} <= {"matplotlib", "pyarrow"}
+    assert {package.split(".")[0] for package in needy.values()} <= {"matplotlib", "pyarrow", "h5py"}
 
 
 def test_the_extras_are_those_of_the_project(root: Path) -> None:

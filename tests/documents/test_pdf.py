@@ -215,6 +215,12 @@ def test_a_logo_and_what_is_none(lengths, lab, tmp_path):
     (tmp_path / "broken.png").write_bytes(b"\x89PNG\r\n\x1a\n broken")
     with pytest.raises(UlnaInputError, match="Typst could not set it"):
         render(gather(lengths, laboratory=logo_lab(lab, tmp_path, "broken.png")))
+    vast = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + (30_000).to_bytes(4, "big") * 2
+    (tmp_path / "vast.png").write_bytes(vast)
+    with pytest.raises(
+        UlnaInputError, match=r"vast\.png: a picture of 900 million points; expected a logo of 25 million"
+    ):
+        render(gather(lengths, laboratory=logo_lab(lab, tmp_path, "vast.png")))
 
 
 def test_a_table_of_no_rows_is_set(lengths):

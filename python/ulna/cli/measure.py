@@ -109,7 +109,7 @@ def measure(
     temperature needs a column temperature, or --temperature; one whose joints have backlash the columns approach1, …;
     one whose joints give way to loads of the calibration's study a column payload, or --payload.
     --json prints one object per
-    point, or with -o an account of what was written. CSV and Parquet are streamed, other formats are read whole. From
+    point, or with -o an account of what was written. CSV, Parquet and HDF5 are streamed, others are read whole. From
     stdin (-) each row is measured and written as it comes.
 
     Example: [bold]ulna measure out/result.json readings.csv -o points.csv[/bold]

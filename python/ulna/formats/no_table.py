@@ -73,6 +73,8 @@ FOREIGN = (
 )
 """In the order in which they are asked."""
 
+#: an old program fills up its last block of so many bytes at most
+_MOST_ZEROS = 1 << 16
 #: lines that are looked at, and of which a table has more with numbers
 _LINES, _LEAST = 400, 0.05
 
@@ -83,6 +85,18 @@ def refuse_foreign(path: Path, start: bytes, what: str) -> None:
     for each in FOREIGN:
         if each.recognised(bare):
             raise UlnaInputError(f"{path}: this is {each.name}, and no table; expected {what}. {each.remedy}")
+
+
+def refuse_zeros(path: Path, start: bytes, what: str) -> None:
+    """Raise UlnaInputError where zeros fill more than the end of a text's last block; start: 64 KiB, or all of it."""
+    text = start.rstrip(b"\0")
+    filled = path.stat().st_size - len(text) if len(text) < len(start) else 0
+    if utf16(start) is None and (not text.strip() or filled > _MOST_ZEROS):
+        at = f"zeros alone from byte {len(text) + 1} on" if text.strip() else "zeros alone"
+        raise UlnaInputError(
+            f"{path}: holds {at}, and no text; expected {what}. It was not written to the end, or lost on the disk: "
+            "copy it again."
+        )
 
 
 def is_prose(start: bytes, names: Collection[str] = ()) -> bool:

@@ -12,7 +12,7 @@ import polars as pl
 from ulna.formats.cells import number_of
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, AnyHeader, Layout
-from ulna.formats.no_table import is_prose, prose, refuse_foreign
+from ulna.formats.no_table import is_prose, prose, refuse_foreign, refuse_zeros
 from ulna.formats.tables.registry import WHAT, open_table, taken_for_text
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
@@ -35,6 +35,8 @@ def read_header(
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
     refuse_foreign(path, start, what)
+    if taken_for_text(start):
+        refuse_zeros(path, start, what)
     names = {*(known or ()), *layout.columns.values()}
     words = layout.header is True and taken_for_text(start) and is_prose(start, names)
     try:

@@ -15,7 +15,11 @@ from ulna.ground.errors import UlnaInputError, nearest
 #: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
 MOST = 1e15
 """Of any number in a hand-written file."""
-MOST_BYTES = 16 << 20
+MOST_BYTES = 8 << 20
+MOST_STEPS, MOST_TABLES = 16, 400_000
+"""Names of one key with points between, and of all of them together: each is a table of its own, of a kilobyte."""
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_STEPS = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART})++[ \t]*+(?=([=\]])?)")
 
 
 def read_bytes(path: Path, what: str, limit: int = -1) -> bytes:
@@ -60,6 +64,7 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
     text = _text(content, path, what)
     if not text.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
+    _check_steps(text, path, what)
     try:
         document = tomllib.loads(text)
         _check_sizes(document, "", path)
@@ -68,6 +73,28 @@ def read_toml(path: Path, what: str) -> tuple[dict[str, Any], str]:
         raise UlnaInputError(f"{path}: not valid TOML: {error}. Expected {what}; correct that place.") from None
     except (RecursionError, ValueError) as error:
         raise UlnaInputError(_beyond(path, error, what)) from None
+
+
+def _check_steps(text: str, path: Path, what: str) -> None:
+    """Keys with points are few, and their points too: what reads them takes memory with the square of these. Raises
+    UlnaInputError."""
+    count = text.count("\n[")
+    for match in _STEPS.finditer(text):
+        if match[1] is None:
+            continue  # a number, or words of a text
+        steps = match[0].count(".") + 1
+        if steps > MOST_STEPS and not re.fullmatch(rf"{_PART}(?:\s*\.\s*{_PART}){{0,{MOST_STEPS - 1}}}\s*", match[0]):
+            line = text.count("\n", 0, match.start()) + 1
+            raise UlnaInputError(
+                f"{path}: line {line}: the key '{match[0][:40]}…' has {steps} names with points between; expected "
+                f"{MOST_STEPS} at most, in {what}. Correct it."
+            )
+        count += steps
+    if count > MOST_TABLES:
+        raise UlnaInputError(
+            f"{path}: more than {MOST_TABLES} tables, too many for a file written by hand; expected {what}. Check the "
+            "path."
+        )
 
 
 def _check_sizes(value: Any, key: str, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -17,6 +18,7 @@ WHAT = 'a profile (TOML, format = "ulna-profile/1")'
 
 #: profiles based on profiles: no chain that anybody means is longer
 MOST_STEPS = 8
+MOST_TOUCHES = 100_000
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,20 @@ def load_profile(name: str, beside: Path, asked: str) -> Profile:
             f"{path}: key 'unit' is missing, but there are limits; units are never guessed. Add unit = "
             '"mm" (or m, in).'
         )
+    _check_counts(file, path)
     return Profile(file, path, sha256)
+
+
+def _check_counts(file: ProfileFile, path: Path) -> None:
+    """Nobody touches more than a hundred thousand times. Raises UlnaInputError."""
+    for name, test in file.test.items():
+        counts = {key: value for key, value in test if type(value) is int}
+        if math.prod(counts.values()) > MOST_TOUCHES:
+            shown = " × ".join(f"{value} {key}" for key, value in counts.items())
+            raise UlnaInputError(
+                f"{path}: key 'test.{name}': {shown}, more than anybody measures; expected {MOST_TOUCHES} touches at "
+                "most. Correct one of them."
+            )
 
 
 def _path(name: str, beside: Path, asked: str) -> Path:

@@ -9,6 +9,8 @@ from typing import Any
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import joined
 from ulna.documents.languages.words import Words
+from ulna.documents.pdf.picture_size import MOST_PIXELS, pixels
+from ulna.documents.pdf.svg_size import too_large
 from ulna.documents.pdf.text import clean, line, name
 from ulna.documents.sections.laboratory import accreditation, contact
 from ulna.formats.toml import read_bytes
@@ -16,6 +18,7 @@ from ulna.ground.errors import UlnaInputError
 
 #: characters of the laboratory's name in the head of later pages; the first page has all of it
 LONGEST_ISSUER = 60
+_MOST_BYTES = 16 << 20
 _PICTURES = {b"\x89PNG": "png", b"\xff\xd8\xff": "jpg", b"GIF8": "gif", b"RIFF": "webp"}
 
 
@@ -73,10 +76,20 @@ def logo(content: Content, words: Words) -> dict[str, Any] | None:
     if content.laboratory is None or content.laboratory.logo is None:
         return None
     path: Path = content.laboratory.logo
-    picture = read_bytes(path, "a logo")
+    picture = read_bytes(path, "a logo", _MOST_BYTES + 1)
+    size = pixels(picture) or 0
+    if len(picture) > _MOST_BYTES or size > MOST_PIXELS:
+        got = f"a picture of {size / 1e6:.0f} million points" if size > MOST_PIXELS else "a file of more than 16 MB"
+        raise UlnaInputError(
+            f"{path}: {got}; expected a logo of {MOST_PIXELS / 1e6:.0f} million points and {_MOST_BYTES >> 20} MB at "
+            "most. Save a smaller one."
+        )
     kind = next((kind for begin, kind in _PICTURES.items() if picture.startswith(begin)), None)
     if kind is None and b"<svg" in picture[:2000]:
         kind = "svg"
+        vast = too_large(picture)
+        if vast is not None:
+            raise UlnaInputError(f"{path}: {vast}; expected a logo that can be printed. Save a simpler one.")
     if kind is None:
         raise UlnaInputError(
             f"{path}: is no picture that can be printed; expected PNG, JPEG, GIF, WebP or SVG, as the key "

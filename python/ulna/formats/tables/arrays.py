@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,8 +19,9 @@ import polars as pl
 from numpy.typing import NDArray
 
 from ulna.formats.cells import bad_cell, names_of
-from ulna.formats.header import Header, Numeric
+from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
+from ulna.formats.unpacked import NUMBER_BYTES, TEXT_BYTES, check_unpacked
 from ulna.ground.errors import UlnaInputError, nearest
 
 NUMBERS, TEXTS = "numbers", "texts"
@@ -28,6 +30,7 @@ NUMBERS, TEXTS = "numbers", "texts"
 MOST_COMPRESSED = 8 * 1032
 #: a wider array is a picture or the like, but no table
 MOST_COLUMNS = 10_000
+_PIECE_BYTES = 32 << 20
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class Variable:
     """`NUMBERS`, `TEXTS`, or what it is instead, in words: "a struct"."""
     read: Callable[[], Any]
     """The values: an array of `shape`, of numbers or of str. Raises whatever the library raises for a damaged file."""
+    rows: Callable[[int, int], Any] | None = None
+    """The same from the first of two rows to before the last (counted from 0), where that costs no more than these."""
 
 
 class NoTextError(Exception):
@@ -84,10 +89,18 @@ class ArrayTable(Header):
     parts: Mapping[str, Column] = field(repr=False)
     """By the file's name of the column."""
     further: str = field(default="", kw_only=True)
+    held: Callable[[], AbstractContextManager[Any]] = field(default=nullcontext, kw_only=True, repr=False)
+    """Within it the file stays open."""
 
     @classmethod
     def of(
-        cls, variables: Sequence[Variable], path: Path, layout: Layout, inner: Sequence[str], what: str
+        cls,
+        variables: Sequence[Variable],
+        path: Path,
+        layout: Layout,
+        inner: Sequence[str],
+        what: str,
+        held: Callable[[], AbstractContextManager[Any]] = nullcontext,
     ) -> ArrayTable:
         """The columns that variables make; inner: paths of what lies further in. Raises UlnaInputError where there are
         none."""
@@ -97,16 +110,47 @@ class ArrayTable(Header):
         names = [name for name, _ in columns]
         inner = [name for name in inner if not name.startswith(("#", "_"))]  # what libraries put there for themselves
         if not inner:
-            return cls(path, names, parts=dict(columns), what=what)
+            return cls(path, names, parts=dict(columns), what=what, held=held)
         told = f"{_some(inner)}: {layout.say('dataset', inner[0])} reads that"
         remark = f"{path}: not read: what is in {told}."
-        return cls(path, names, parts=dict(columns), what=what, remarks=[remark], further=f" There is more in {told}.")
+        further = f" There is more in {told}."
+        return cls(path, names, parts=dict(columns), what=what, remarks=[remark], further=further, held=held)
 
     def counted(self) -> int | None:
         lengths = {self.parts[self.own(name)].length for name in self.columns if name.startswith("q")}
         return lengths.pop() if len(lengths) == 1 else None
 
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+        parts = self._checked(numeric, columns)
+        values: dict[int, NDArray[Any]] = {}
+        with self.held():
+            for part in parts.values():
+                if id(part.variable) not in values:
+                    values[id(part.variable)] = self._values(part.variable)
+        return self._columns(parts, values, numeric)
+
+    def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
+        def numeric(column: str) -> bool:
+            return column in numbers
+
+        columns = [*numbers, *texts]
+        parts = self._checked(numeric, columns)
+        variables = {id(part.variable): part.variable for part in parts.values()}
+        if not all(variable.rows for variable in variables.values()) or not parts:
+            yield from super().pieces(numbers, texts, rows)
+            return
+        length = next(iter(parts.values())).length
+        widest = max(math.prod(variable.shape) // length for variable in variables.values()) if length else 1
+        step = max(1, min(rows, _PIECE_BYTES // (8 * widest)))
+        with self.held():
+            for before in range(0, length, step):
+                band = (before, min(length, before + step))
+                values = {key: self._values(variable, band) for key, variable in variables.items()}
+                frame = self.checked(self._columns(parts, values, numeric), numeric, before=before)
+                yield self.piece(frame, numbers, texts, before)
+
+    def _checked(self, numeric: Numeric, columns: Sequence[str]) -> dict[str, Column]:
+        """Where some columns are. Raises UlnaInputError where they cannot be read, or not together."""
         parts = {name: self.parts[self.own(name)] for name in columns}
         for name, part in parts.items():
             if part.variable.kind not in (NUMBERS, TEXTS):
@@ -119,11 +163,20 @@ class ArrayTable(Header):
                     f"{self.path}: {self.named(name)}: holds texts; expected numbers. Write it as an array of numbers."
                 )
         self._check_lengths(parts)
-        values: dict[int, NDArray[Any]] = {}
+        each = {id(part.variable): part.variable for part in parts.values()}
+        size = sum(
+            math.prod(variable.shape) * (TEXT_BYTES if variable.kind == TEXTS else NUMBER_BYTES)
+            for variable in each.values()
+        )
+        check_unpacked(self.path, size, f"the values of {_some([variable.name for variable in each.values()])}")
+        return parts
+
+    def _columns(
+        self, parts: Mapping[str, Column], values: Mapping[int, NDArray[Any]], numeric: Numeric
+    ) -> pl.DataFrame:
+        """Columns of the values of their variables."""
         found = []
         for name, part in parts.items():
-            if id(part.variable) not in values:
-                values[id(part.variable)] = self._values(part.variable)
             array = values[id(part.variable)]
             column = array.reshape(-1) if part.index is None else array[:, part.index]
             if part.variable.kind == NUMBERS:
@@ -148,9 +201,16 @@ class ArrayTable(Header):
                 "what does not belong to the readings."
             )
 
-    def _values(self, variable: Variable) -> NDArray[Any]:
+    def _values(self, variable: Variable, rows: tuple[int, int] | None = None) -> NDArray[Any]:
+        """All of them, or some rows."""
+        shape = variable.shape or (1,)
+        if rows is not None:
+            shape = (rows[1] - rows[0],) if 1 in shape or len(shape) == 1 else (rows[1] - rows[0], *shape[1:])
         try:
-            values = np.asarray(variable.read())
+            if rows is None or variable.rows is None:
+                values = np.asarray(variable.read())
+            else:
+                values = np.asarray(variable.rows(*rows))
         except (MemoryError, UlnaInputError):
             raise
         except (NoTextError, UnicodeDecodeError) as error:
@@ -160,17 +220,18 @@ class ArrayTable(Header):
             ) from None
         except Exception as error:  # a damaged file: the libraries raise whatever they stumble over
             raise unreadable(self.path, f"'{variable.name}'", error) from None
-        if values.size != math.prod(variable.shape) or np.iscomplexobj(values):
+        if values.size != math.prod(shape) or np.iscomplexobj(values):
             what = "complex numbers" if np.iscomplexobj(values) else f"{values.size} values of {_shape(variable)}"
             raise UlnaInputError(
                 f"{self.path}: '{variable.name}': {what}; expected plain numbers or names. Write it again."
             )
-        return values.reshape(variable.shape or (1,))
+        return values.reshape(shape)
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
         part = self.parts[self.own(column)]
-        array = self._values(part.variable)
-        value = array.reshape(-1)[row - 1] if part.index is None else array[row - 1, part.index]
+        band = (row - 1, row) if part.variable.rows is not None else None
+        array, at = self._values(part.variable, band), 0 if band else row - 1
+        value = array.reshape(-1)[at] if part.index is None else array[at, part.index]
         return bad_cell(self, row, column, str(value), numeric)
 
     def origin(self, column: str) -> str:

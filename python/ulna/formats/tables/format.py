@@ -1,5 +1,8 @@
 """What a format of tables owes: how its files are recognised, opened, and called in messages.
 
+No format unpacks what its file declares before that is compared with the file's size (`ulna.formats.unpacked`); a
+library that crashes or hangs with damaged files is asked in a process of its own (`ulna.formats.asking`).
+
 A new format is one file beside this one, which makes its own `ulna.formats.header.Header` of a file, and its row in
 `registry.py`, a `TableFormat`; nobody else asks what kind of file a table is. `tests/contract/test_table_formats.py`
 holds every row to what is written here.

@@ -14,6 +14,7 @@ import polars.exceptions
 from ulna.formats.cells import bad_cell, first_of, labels_of, no_numbers
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import Layout
+from ulna.formats.unpacked import NUMBER_BYTES, TEXT_BYTES, check_unpacked
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import installed
 
@@ -32,7 +33,17 @@ class ParquetTable(Header):
     def rows(self) -> int:
         return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
 
+    def _check_size(self, numbers: int, texts: int) -> None:
+        """A thousand million equal values take some bytes of a file. Raises UlnaInputError."""
+        try:
+            rows = self.rows
+        except UNREADABLE as error:
+            self._unreadable(error)
+        check_unpacked(self.path, rows * (numbers * NUMBER_BYTES + texts * TEXT_BYTES), f"its {rows} rows")
+
     def cells(self, numeric: Numeric, columns: Sequence[str]) -> pl.DataFrame:
+        count = sum(map(numeric, columns))
+        self._check_size(count, len(columns) - count)
         try:
             stored = pl.read_parquet(self.path, columns=[self.own(name) for name in columns])
         except UNREADABLE as error:
@@ -58,6 +69,7 @@ class ParquetTable(Header):
 
         from ulna.formats.tables.arrow import array_piece
 
+        self._check_size(len(numbers), len(texts))
         columns = [*numbers, *texts]
         before = 0
         try:

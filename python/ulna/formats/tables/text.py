@@ -171,7 +171,13 @@ class TextTable(Header):
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
         with self.path.open(encoding="utf-8-sig", newline="") as stream:
-            cells = next(islice(csv.reader(stream, delimiter=self.separator), row + self.lines - 1, None))
+            try:
+                cells = next(islice(csv.reader(stream, delimiter=self.separator), row + self.lines - 1, None))
+            except csv.Error:
+                return (
+                    f"{self.path}: {self.where(row)}: a cell has more than {csv.field_size_limit()} signs; expected "
+                    f"{self.what}. Correct it."
+                )
         return self._refusal(row, column, cells[self.columns.index(column)], numeric)
 
     def _refusal(self, row: int, column: str, cell: str, numeric: Numeric) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import datetime
 import re
 import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +26,7 @@ from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import is_blank
 from ulna.formats.tables.marks import OLD_OFFICE
 from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
+from ulna.formats.tables.workbook_parts import check_parts
 from ulna.ground.errors import UlnaInputError, nearest
 
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
@@ -147,7 +149,8 @@ def _check_kind(path: Path, start: bytes, what: str) -> None:
     try:
         with zipfile.ZipFile(path) as archive:
             inside = set(archive.namelist())
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
+            check_parts(path, archive)
+    except (zipfile.BadZipFile, zlib.error, OSError, ValueError, NotImplementedError) as error:
         raise _unreadable(path, what, error) from None
     if "[Content_Types].xml" in inside and any(re.match(r"xl/.*\.xml", name) for name in inside):
         return
@@ -181,7 +184,7 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
     if not grid:
         raise UlnaInputError(f"{path}: sheet '{sheet.name}' is empty; expected a table. Name another sheet or file.")
     merged = list(sheet.merged_cell_ranges or ())
-    remarks = _fill_merged(grid, merged, sheet.name)
+    remarks = _fill_merged(path, grid, merged, sheet.name)
     lines = list(range(1, len(grid) + 1))
     grid = [[_name(cell) if isinstance(cell, bool) else cell for cell in row] for row in grid]
     laid = lay_out(
@@ -207,16 +210,25 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
     )
 
 
-def _fill_merged(grid: list[list[Any]], merged: list[tuple[tuple[int, int], tuple[int, int]]], sheet: str) -> list[str]:
+def _fill_merged(
+    path: Path, grid: list[list[Any]], merged: list[tuple[tuple[int, int], tuple[int, int]]], sheet: str
+) -> list[str]:
     """What stands in merged cells stands in each row of them: only the first has it in the file. Rows that are merged
     across columns are titles, and are left."""
     found = []
+    left_to_fill = sum(map(len, grid)) + len(grid)  # as cells are merged once, no more than there are
     for (top, left), (bottom, right) in sorted(merged):
         if left != right or top >= len(grid) or left >= len(grid[top]) or is_blank(grid[top][left]):
             continue
         for row in grid[top + 1 : bottom + 1]:
             row += [""] * (left + 1 - len(row))
             row[left] = grid[top][left]
+        left_to_fill -= len(grid[top + 1 : bottom + 1])
+        if left_to_fill < 0:
+            raise UlnaInputError(
+                f"{path}: sheet '{sheet}': merged cells lie upon each other, as the file says; expected each cell to "
+                "be merged once. It is damaged: open and save it in Excel or LibreOffice."
+            )
         found.append(f"{address('', top, left)}:{address('', bottom, left)}")
     if not found:
         return []
