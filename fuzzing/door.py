@@ -16,6 +16,8 @@ class Door:
 
     name: str
     make: Callable[[Room, Random], Trial]
+    seconds: float = 10.0
+    """What an input may take; more where answers take long by right."""
     short: int = 40
     """Inputs of the short run, which is a test; fewer where each takes long."""
 

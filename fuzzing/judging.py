@@ -16,7 +16,6 @@ from pathlib import Path
 from fuzzing.room import Room, inside
 from fuzzing.trial import Trial
 
-SECONDS = 10.0
 BYTES = 1 << 30
 ENDINGS = (0, 1, 2)
 """Done; done, and the answer is no; bad input."""
@@ -60,7 +59,7 @@ def _captured(folder: Path) -> Iterator[dict[str, str]]:
             said[name] = path.read_bytes().decode("utf-8", "backslashreplace")
 
 
-def judge(trial: Trial, room: Room, aside: Path) -> str | None:
+def judge(trial: Trial, room: Room, aside: Path, most_seconds: float = 10.0) -> str | None:
     """What is wrong with how Ulna takes an input, in one line; None where nothing is."""
     from ulna.cli import app
 
@@ -86,7 +85,7 @@ def judge(trial: Trial, room: Room, aside: Path) -> str | None:
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory) * 1024
     if escaped:
         return f"escaped: {escaped}"
-    return _of(code, said["stdout"], said["stderr"]) or _of_size(seconds, grown)
+    return _of(code, said["stdout"], said["stderr"]) or _of_size(seconds, most_seconds, grown)
 
 
 def _of(code: object, out: str, err: str) -> str | None:
@@ -107,8 +106,8 @@ def _of(code: object, out: str, err: str) -> str | None:
     return None
 
 
-def _of_size(seconds: float, grown: int) -> str | None:
-    if seconds > SECONDS:
+def _of_size(seconds: float, most_seconds: float, grown: int) -> str | None:
+    if seconds > most_seconds:
         return f"took {seconds:.0f} s"
     if grown > BYTES:
         return f"took {grown >> 20} MB more"

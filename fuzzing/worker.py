@@ -33,7 +33,7 @@ def main() -> None:
         door, _, number = line.rstrip("\n").rpartition(" ")
         answer(begun=[door, int(number)])
         trial = DOORS[door].trial(room, arguments.seed, int(number))
-        answer(found=judge(trial, room, arguments.aside))
+        answer(found=judge(trial, room, arguments.aside, DOORS[door].seconds))
 
 
 if __name__ == "__main__":

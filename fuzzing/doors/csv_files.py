@@ -16,7 +16,8 @@ def csv_bytes(table: Table, source: Random) -> bytes:
     for _ in range(source.choice([0, 0, 0, 1, 2])):
         lines.insert(source.randrange(len(lines) + 1), source.choice(_LINES))
     text = end.join(lines) + source.choice([end, end, "", end * 3, "\x1a", "\x00\x00"])
-    content = text.encode(source.choice(_ENCODINGS), "surrogatepass" if source.random() < 0.5 else "replace")
+    encoding = source.choice(_ENCODINGS)
+    content = text.encode(encoding, "surrogatepass" if encoding.startswith("utf") else "replace")
     return spoilt_text(content, source) if source.random() < 0.2 else content
 
 
