@@ -59,7 +59,9 @@ def _captured(folder: Path) -> Iterator[dict[str, str]]:
             said[name] = path.read_bytes().decode("utf-8", "backslashreplace")
 
 
-def judge(trial: Trial, room: Room, aside: Path, most_seconds: float = 10.0) -> str | None:
+def judge(
+    trial: Trial, room: Room, aside: Path, most_seconds: float = 10.0, endings: tuple[int, ...] = ENDINGS
+) -> str | None:
     """What is wrong with how Ulna takes an input, in one line; None where nothing is."""
     from ulna.cli import app
 
@@ -85,12 +87,12 @@ def judge(trial: Trial, room: Room, aside: Path, most_seconds: float = 10.0) -> 
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory) * 1024
     if escaped:
         return f"escaped: {escaped}"
-    return _of(code, said["stdout"], said["stderr"]) or _of_size(seconds, most_seconds, grown)
+    return _of(code, endings, said["stdout"], said["stderr"]) or _of_size(seconds, most_seconds, grown)
 
 
-def _of(code: object, out: str, err: str) -> str | None:
+def _of(code: object, endings: tuple[int, ...], out: str, err: str) -> str | None:
     last = " | ".join(err.strip().splitlines())[-300:]
-    if code not in ENDINGS:
+    if code not in endings:
         return f"exit {code}: {last}"
     if found := FOREIGN.search(err):
         return f"another's words ({found[0]!r}): {last}"
@@ -100,7 +102,7 @@ def _of(code: object, out: str, err: str) -> str | None:
         return f"control character {found[0]!r} on stderr: {last!r}"
     if len(err) > LONGEST:
         return f"{len(err)} characters on stderr"
-    if found := re.search(r"(?<![\w'\"])(nan|NaN|inf|-inf|Infinity)(?![\w'\"])", out):
+    if found := re.search(r"(?<![\w'\"])(nan|inf|-inf)(?![\w'\"])", out):
         at = out[max(0, found.start() - 60) : found.end() + 20]
         return f"{found[0]} in what is printed: {at!r}"
     return None

@@ -65,8 +65,10 @@ def _alike(_all: Any, owner: Any, name: Any, source: Random, _dates: bool) -> No
         )
     elif isinstance(value, list):
         owner[name] = _list(value, source)
-    else:
+    elif isinstance(value, dict):
         owner[name] = source.choice([{}, [value], [], text(source), list(value.values())])
+    else:
+        owner[name] = source.choice([[value], str(value), any_value(source)])
 
 
 def _list(value: list[Any], source: Random) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import queue
@@ -81,7 +82,8 @@ class Worker:
             env=os.environ | ENVIRONMENT,
         )
         self._said: queue.Queue[Any] = queue.Queue()
-        threading.Thread(target=self._listen, args=(self._process, self._said), daemon=True).start()
+        self._listener = threading.Thread(target=self._listen, args=(self._process, self._said), daemon=True)
+        self._listener.start()
         # loading takes its own time, and is nobody's input
         self._process.stdin.write("options 0\n")  # type: ignore[union-attr]
         self._process.stdin.flush()  # type: ignore[union-attr]
@@ -108,6 +110,10 @@ class Worker:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
+            self._listener.join()
+            for stream in (self._process.stdin, self._process.stdout):
+                with contextlib.suppress(OSError):
+                    stream.close()  # type: ignore[union-attr]
             self._process = None
         if self._folder is not None:
             shutil.rmtree(self._folder, ignore_errors=True)

@@ -62,11 +62,11 @@ DOORS: dict[str, Door] = {
     door.name: door
     for door in [
         Door("table CSV", TableDoor(".csv", csv_bytes)),
-        Door("table Excel", TableDoor(".xlsx", xlsx_bytes)),
-        Door("table Parquet", TableDoor(".parquet", parquet_bytes)),
+        Door("table Excel", TableDoor(".xlsx", xlsx_bytes), short=25),
+        Door("table Parquet", TableDoor(".parquet", parquet_bytes), short=25),
         Door("table HDF5", TableDoor(".h5", hdf5_bytes)),
         Door("table MAT", TableDoor(".mat", mat_bytes)),
-        Door("table Arrow", TableDoor(".arrow", arrow_bytes)),
+        Door("table Arrow", TableDoor(".arrow", arrow_bytes), short=25),
         Door(
             "arm",
             TomlDoor(
@@ -110,7 +110,7 @@ DOORS: dict[str, Door] = {
                     "cross-validate {file} --by artefact",
                 ],
             ),
-            short=15,
+            short=12,
         ),
         Door(
             "simulation",
@@ -136,7 +136,8 @@ DOORS: dict[str, Door] = {
                     "plan arm.toml {file} -o p",
                 ],
             ),
-            short=6,
+            seconds=90.0,
+            short=3,
         ),
         Door(
             "task",
@@ -163,6 +164,8 @@ DOORS: dict[str, Door] = {
                     "uncertainty out/result.json {file} --trials 5",
                 ],
             ),
+            seconds=90.0,
+            short=6,
         ),
         Door(
             "performance",
@@ -176,7 +179,8 @@ DOORS: dict[str, Door] = {
                     "uncertainty arm.toml task.toml --performance {file} --trials 20",
                 ],
             ),
-            short=15,
+            seconds=30.0,
+            short=10,
         ),
         Door(
             "profile",
@@ -225,6 +229,7 @@ DOORS: dict[str, Door] = {
                 ],
                 _RESULT,
             ),
+            short=25,
         ),
         Door(
             "result kept by batch",
@@ -247,6 +252,7 @@ DOORS: dict[str, Door] = {
                 ],
                 _EVALUATED,
             ),
+            short=12,
         ),
         Door(
             "cross-validation",
@@ -259,6 +265,7 @@ DOORS: dict[str, Door] = {
                     "report out/result.json -o r.html --cross-validation {file}",
                 ],
             ),
+            short=12,
         ),
         Door(
             "verification",
@@ -270,6 +277,7 @@ DOORS: dict[str, Door] = {
                 ],
                 _VERIFIED,
             ),
+            short=12,
         ),
         Door(
             "plan result",
@@ -282,6 +290,7 @@ DOORS: dict[str, Door] = {
                     "simulate --plan planned -o tried",
                 ],
             ),
+            short=12,
         ),
         Door(
             "URDF",

@@ -100,8 +100,12 @@ def read_json(path: Path, what: str) -> tuple[dict[str, Any], str]:
     except (RecursionError, ValueError) as error:
         raise UlnaInputError(_beyond(path, error, what)) from None
     if not isinstance(document, dict):
-        raise UlnaInputError(f"{path}: the document is a {type(document).__name__}, expected an object: {what}.")
+        kind = _KINDS.get(type(document), "a number")
+        raise UlnaInputError(f"{path}: the document is {kind}; expected an object: {what}. Name the right file.")
     return document, sha256(content)
+
+
+_KINDS = {list: "a list", str: "a text", bool: "true or false", type(None): "null"}
 
 
 def _no_number(constant: str) -> Any:
