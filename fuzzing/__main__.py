@@ -32,7 +32,7 @@ def run(room: Path, arguments: argparse.Namespace) -> tuple[dict[str, int], list
     doors = arguments.door or list(DOORS)
     counts = dict.fromkeys(doors, 0)
     found: list[Found] = []
-    todo = spread(doors, arguments.first, arguments.inputs)
+    todo = spread({door: DOORS[door].short for door in doors}, arguments.first, arguments.inputs)
     lock = threading.Lock()
     ends = time.monotonic() + arguments.seconds if arguments.inputs is None else float("inf")
 

@@ -19,7 +19,7 @@ class Door:
     seconds: float = 10.0
     """What an input may take; more where answers take long by right."""
     short: int = 40
-    """Inputs of the short run, which is a test; fewer where each takes long."""
+    """Inputs of the short run, which is a test, and share in a long one; fewer where each takes long."""
 
     def trial(self, room: Room, seed: int, number: int) -> Trial:
         """Input `number` of a seed."""

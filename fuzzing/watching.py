@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -133,11 +133,12 @@ ENVIRONMENT = {
 }
 
 
-def spread(doors: list[str], first: int, inputs: int | None) -> Iterator[tuple[str, int]]:
-    """Each door's inputs in turn, ten at a time; without end where their number is not said."""
-    number = first
-    while inputs is None or number < first + inputs:
-        upto = number + 10 if inputs is None else min(number + 10, first + inputs)
-        for door in doors:
-            yield from ((door, k) for k in range(number, upto))
-        number = upto
+def spread(shares: Mapping[str, int], first: int, inputs: int | None) -> Iterator[tuple[str, int]]:
+    """Inputs of each door in turn, as many at a time as is its share; without end where their number is not said."""
+    numbers = dict.fromkeys(shares, first)
+    ends = float("inf") if inputs is None else first + inputs
+    while any(number < ends for number in numbers.values()):
+        for door, share in shares.items():
+            upto = int(min(numbers[door] + share, ends))
+            yield from ((door, k) for k in range(numbers[door], upto))
+            numbers[door] = upto

@@ -128,6 +128,6 @@ def test_a_worker_that_dies_is_made_anew(room: Room, monkeypatch: pytest.MonkeyP
 
 
 def test_doors_take_turns() -> None:
-    taken = list(spread(["a", "b"], 5, 12))
+    taken = list(spread({"a": 10, "b": 4}, 5, 12))
     assert taken[:11] == [*(("a", k) for k in range(5, 15)), ("b", 5)]
     assert len(taken) == len(set(taken)) == 24

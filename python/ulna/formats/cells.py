@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import polars as pl
@@ -74,6 +75,11 @@ def minutes_said(degrees: float) -> str:
     )
 
 
+def some_of(names: Sequence[str], most: int = 12) -> str:
+    """Names one after the other; of very many the first and the last."""
+    return ", ".join(names if len(names) <= most else [*names[: most - 2], "…", names[-1]])
+
+
 def wrong_count(header: Header, row: int, cells: list[str], width: int, separator: str, named: bool) -> str:
     """The message for a row of a text with more or fewer cells than the header (named) or the first row."""
     hint = "Correct the row."
@@ -83,7 +89,7 @@ def wrong_count(header: Header, row: int, cells: list[str], width: int, separato
         hint = f"Are the columns separated by semicolons? Write '{separator}' between them and points in numbers."
     elif any("\n" in cell for cell in cells):
         hint = "Is a quotation mark not closed? A cell runs over several lines."
-    names = ", ".join(map(header.own, header.columns))
+    names = some_of(list(map(header.own, header.columns)))
     return (
         f"{header.path}: {header.where(row)} has {len(cells)} cell{'s' * (len(cells) != 1)}, expected {width} "
         f"{'as in the header' if named else 'as in the first line'} ({names}). {hint}"
@@ -111,6 +117,9 @@ def is_decimal_comma(cell: str) -> bool:
 def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
     """A typed column of labels as String. Raises UlnaInputError for a type that holds none, or dates beyond dates."""
     reason = "" if not column.dtype.is_temporal() or _are_dates(column) else ", beyond all dates"
+    zone = getattr(column.dtype, "time_zone", None)
+    if zone is not None and not _is_zone(zone):
+        reason = ", a time zone that is nowhere"
     if not reason:
         try:
             return names_of(column)
@@ -120,6 +129,15 @@ def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
         f"{header.path}: {header.named(name)} is of type {column.dtype}{reason}; expected texts or whole numbers as "
         "labels. Write it as texts."
     )
+
+
+def _is_zone(name: str) -> bool:
+    """Whether there is such a time zone: Polars ends the process where there is none."""
+    try:
+        pl.Series([0], dtype=pl.Datetime("us", "UTC")).dt.convert_time_zone(name)
+    except pl.exceptions.PolarsError:
+        return False
+    return True
 
 
 _DAYS = 2_932_896

@@ -88,7 +88,7 @@ class TextTable(Header):
         # All columns: where some are left out Polars does not count the cells of a row. The names come from our own
         # reading of the header, which forgives spaces and a byte-order mark.
         return pl.scan_csv(
-            self.path,
+            self.path.absolute(),
             has_header=False,
             skip_rows=self.lines,
             schema={name: types.get(name, pl.String) for name in self.columns},
