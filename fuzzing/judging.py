@@ -82,7 +82,7 @@ def judge(
                 frames = traceback.extract_tb(error.__traceback__)
                 escaped += f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}"
     finally:
-        room.clear(trial.files)
+        room.clear()
     seconds = time.process_time() - began
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory) * 1024
     if escaped:
@@ -102,7 +102,7 @@ def _of(code: object, endings: tuple[int, ...], out: str, err: str) -> str | Non
         return f"control character {found[0]!r} on stderr: {last!r}"
     if len(err) > LONGEST:
         return f"{len(err)} characters on stderr"
-    if found := re.search(r"(?<![\w'\"])(nan|inf|-inf)(?![\w'\"])", out):
+    if found := re.search(r"(?<![\w'\"<-])(nan|-?inf)(?![\w'\">])", out):
         at = out[max(0, found.start() - 60) : found.end() + 20]
         return f"{found[0]} in what is printed: {at!r}"
     return None

@@ -225,27 +225,35 @@ class Room:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._read: dict[str, bytes] = {}
-        self._there = set(folder.rglob("*"))
+        self._content = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        self._folders = {path for path in folder.rglob("*") if path.is_dir()}
+        self._marks = {path: _mark(path) for path in self._content}
 
     def read(self, name: str) -> bytes:
         """A document as it was made, whatever lies over it now."""
-        if name not in self._read:
-            self._read[name] = (self.folder / name).read_bytes()
-        return self._read[name]
+        return self._content[self.folder / name]
 
     def lay(self, files: dict[str, bytes]) -> None:
         for name, content in files.items():
-            self.read(name) if (self.folder / name) in self._there else None
             path = self.folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content)
 
-    def clear(self, files: dict[str, bytes]) -> None:
-        """As it was."""
-        for name in files:
-            path = self.folder / name
-            if path in self._there:
-                path.write_bytes(self._read[name])
-        for path in sorted(set(self.folder.rglob("*")) - self._there, reverse=True):
+    def clear(self) -> None:
+        """As it was, whatever was laid, written over or taken away."""
+        for path in sorted(set(self.folder.rglob("*")) - self._content.keys() - self._folders, reverse=True):
             path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
+        for path, mark in self._marks.items():
+            if _mark(path) != mark:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.unlink(missing_ok=True)
+                path.write_bytes(self._content[path])
+                self._marks[path] = _mark(path)
+
+
+def _mark(path: Path) -> tuple[int, ...]:
+    """What changes when a file does; () where there is none."""
+    if path.is_symlink() or not path.is_file():
+        return ()
+    state = path.stat()
+    return state.st_ino, state.st_size, state.st_mtime_ns

@@ -116,11 +116,8 @@ def is_decimal_comma(cell: str) -> bool:
 
 def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
     """A typed column of labels as String. Raises UlnaInputError for a type that holds none, or dates beyond dates."""
-    reason = "" if not column.dtype.is_temporal() or _are_dates(column) else ", beyond all dates"
-    zone = getattr(column.dtype, "time_zone", None)
-    if zone is not None and not _is_zone(zone):
-        reason = ", a time zone that is nowhere"
-    if not reason:
+    reason = _unfit(column)
+    if reason is None:
         try:
             return names_of(column)
         except pl.exceptions.PolarsError as error:
@@ -131,10 +128,19 @@ def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
     )
 
 
+def _unfit(column: pl.Series) -> str | None:
+    """Why Polars must not be asked for texts: it would end the process. None where it may."""
+    if column.dtype.is_nested():
+        return ""
+    zone = getattr(column.dtype, "time_zone", None)
+    if zone is not None and not _is_zone(zone):
+        return ", a time zone that is nowhere"
+    return ", beyond all dates" if column.dtype.is_temporal() and not _are_dates(column) else None
+
+
 def _is_zone(name: str) -> bool:
-    """Whether there is such a time zone: Polars ends the process where there is none."""
     try:
-        pl.Series([0], dtype=pl.Datetime("us", "UTC")).dt.convert_time_zone(name)
+        pl.Series([0], dtype=pl.Datetime("us")).dt.replace_time_zone(name)
     except pl.exceptions.PolarsError:
         return False
     return True

@@ -67,7 +67,7 @@ def decoded(path: Path, content: bytes, what: str, stated: str | None, say: str)
     except UnicodeError as error:
         raise UlnaInputError(
             f"{path}: looks like {found} text, but is none from byte {getattr(error, 'start', 0) + 1} on; expected "
-            f"{what}. The file is damaged, or its letters are others: say {say}, or whichever it is, or save it as UTF-8."
+            f"{what}. The file is damaged, or written otherwise: say {say}, or whichever it is, or save it as UTF-8."
         ) from None
 
 
