@@ -27,7 +27,7 @@ FOREIGN = re.compile(
     r"list index|out of bounds for axis|has no attribute|takes \d+ positional"
 )
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
-LONGEST = 20_000
+LONGEST = 100_000
 """Characters on stderr."""
 
 
