@@ -98,6 +98,14 @@ PEERS_PYTHON ?= $(BIN)/python
 bench: build ## time the core and the peers that are installed, side by side; writes docs/benchmarks/results.md
 	$(BIN)/python -m benchmarks --python $(PEERS_PYTHON)
 
+FUZZ_SECONDS ?= 600
+FUZZ_SEED ?= 1
+FUZZ_JOBS ?= 1
+
+.PHONY: fuzz
+fuzz: build ## put hostile inputs to every door for FUZZ_SECONDS, from FUZZ_SEED; writes docs/benchmarks/fuzzing.md
+	$(BIN)/python -m fuzzing --seconds $(FUZZ_SECONDS) --seed $(FUZZ_SEED) --jobs $(FUZZ_JOBS) --page docs/benchmarks/fuzzing.md
+
 .PHONY: nist
 nist: build ## NIST's reference problems and fits through the solver and the geometry; writes the tables of the docs
 	ULNA_NIST="$(CURDIR)/docs/benchmarks" cargo test --locked --profile checked --package ulna --test nist

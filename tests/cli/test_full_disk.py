@@ -32,7 +32,7 @@ COMMANDS = {
     "simulate": "simulate simulation.toml -o {out}",
     "plan": "plan platinum.toml plan.toml -o {out}",
     "report": "report done -o {out}.html",
-    "verify": "verify platinum.toml --make-plan -o {out}",
+    "verify": "verify --make-plan performance.toml -o {out}",
     "import dh": "import dh arm.csv --convention dh -o {out}.toml",
     "import urdf": "import urdf arm.urdf -o {out}.toml",
     "export urdf": "export urdf done -o {out}.urdf",

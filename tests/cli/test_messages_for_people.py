@@ -11,7 +11,16 @@ from tests.small_study import STUDY, SmallStudy
 
 from ulna.ground.errors import LONGEST, for_people
 
-NAMES = ["\u001b[31mred", "\u0007bell", "\u009b31m", "left\u202eright", "a\u0000b", "x" * 20_000]
+NAMES = [
+    "\u001b[31mred",
+    "\u0007bell",
+    "\u009b31m",
+    "left\u202eright",
+    "a\u0000b",
+    "two\nlines",
+    "two\rlines",
+    "x" * 20_000,
+]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -27,5 +36,5 @@ def test_a_name_out_of_a_file(name: str, tmp_path: Path) -> None:
 
 
 def test_what_people_write_stays() -> None:
-    for said in ("Prüfstab „links“ ⌀ 25 mm", "两个 探针", "line 1\nline 2\twith a tab", "µm² ≤ ±"):
+    for said in ("Prüfstab „links“ ⌀ 25 mm", "两个 探针", "2 problems:\n- one\twith a tab\n- another", "µm² ≤ ±"):
         assert for_people(said) == said

@@ -42,7 +42,10 @@ def test_a_fit_that_did_not_converge_is_not_certified(made: Callable[..., bytes]
 DAMAGED: dict[str, tuple[Callable[[dict[str, Any]], Any], str]] = {
     "no provenance": (lambda result: result.pop("provenance"), "'provenance' is missing"),
     "no version": (lambda result: result["provenance"].pop("version"), "'provenance.version' is missing"),
-    "a file without sum": (lambda result: result["provenance"]["files"][1].pop("sha256"), "'provenance.files.2'"),
+    "a file without sum": (
+        lambda result: result["provenance"]["files"][1].pop("sha256"),
+        "'provenance.files.2.sha256' is missing",
+    ),
     "a text for a number": (
         lambda result: result["parameters"][1].update(value="1"),
         "'parameters: joint.1.alpha': got '1', expected a number",

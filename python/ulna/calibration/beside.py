@@ -37,7 +37,7 @@ def read_beside(entry: TableBeside, of: Path, schema: dict[str, Any]) -> pl.Data
             "to another run: copy the right one there, or calibrate again."
         )
     try:
-        table = pl.read_parquet(path)
+        table = pl.read_parquet(path.absolute())
         table = table.select(pl.col(name).cast(dtype) for name, dtype in schema.items())
     except (pl.exceptions.PolarsError, OSError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__

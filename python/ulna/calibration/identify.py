@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -43,15 +44,19 @@ class Identification(Shown):
 
     @classmethod
     def from_core(cls, found: _core.Identifiability) -> Identification:
-        """Copy out of the core."""
+        """Copy out of the core.
+
+        Where readings determine nothing at all, as few of them as placements, the core has no measure of directions:
+        those that it gives without weights are left out.
+        """
         return cls(
             parameters=found.parameters,
             determined=found.determined,
             names=list(found.names),
             singular_values=[float(value) for value in found.singular_values],
             condition=float(found.condition),
-            not_determined=list(found.not_determined),
-            lost=[dict(direction) for direction in found.lost],
+            not_determined=list(found.not_determined if found.determined else found.names),
+            lost=[dict(direction) for direction in found.lost if _weighed(direction["combination"])],
             # without degrees of freedom nobody knows how well: nothing can be called weak
             weak=[dict(direction) for direction in found.weak if math.isfinite(direction["u"])],
             from_prior=list(found.from_prior),
@@ -72,6 +77,10 @@ class Identification(Shown):
             facts,
             notes=[*map(not_determined, self.lost), *weak],
         )
+
+
+def _weighed(weights: Mapping[str, float]) -> bool:
+    return bool(weights) and all(map(math.isfinite, weights.values()))
 
 
 def not_determined(direction: dict[str, Any]) -> str:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
+from typing_extensions import TypedDict
 
 from ulna.arm.joint_file import JointTable
 from ulna.arm.payload import PayloadTable
@@ -73,6 +74,16 @@ class OverallEntry(Open):
     """The same without the readings that are far off, where a loss let them count less."""
 
 
+class FileEntry(TypedDict):
+    """An input file, as the bytes were that were read."""
+
+    __pydantic_config__ = ConfigDict(strict=True, extra="allow")  # type: ignore[misc]  # pydantic's own word
+
+    path: str
+    sha256: str
+    rows: int
+
+
 class ProvenanceEntry(Open):
     """From what, with what and when it was made."""
 
@@ -82,8 +93,8 @@ class ProvenanceEntry(Open):
     """Path of the study file; null of one made in memory."""
     rows: Literal["fit", "check", "all"] | None = None
     """Which rows of the study, where it keeps some to check the fit."""
-    files: list[dict[str, str | int]]
-    """path, sha256 and rows of each input file."""
+    files: list[FileEntry]
+    """Each input file."""
     options: dict[str, Any] = Field(default_factory=dict)
     """What was asked of the fit."""
     seed: int = 0

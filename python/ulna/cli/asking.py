@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import typer
 
-from ulna.ground.errors import UlnaInputError
+from ulna.ground.errors import UlnaInputError, for_people
 from ulna.proposals.answers import Answers, Question, UnansweredError
 from ulna.proposals.propose import Proposal, propose
 from ulna.proposals.several import Touched, another, arm_said, parts_of, propose_all, touched
@@ -62,7 +62,7 @@ def _answered(answers: Answers) -> Answers:
         except UlnaInputError as error:  # what was typed last does not fit: it is asked for again
             if before is None or before == answers:
                 raise
-            print(error, file=sys.stderr)
+            print(for_people(str(error)), file=sys.stderr)
             answers = before
 
 
@@ -81,4 +81,4 @@ def _typed(question: Question, read: Callable[[str], Answered]) -> Answered:
         try:
             return read(text)
         except UlnaInputError as error:
-            print(error, file=sys.stderr)
+            print(for_people(str(error)), file=sys.stderr)

@@ -14,6 +14,7 @@ import textwrap
 from collections.abc import Iterable
 from typing import Any
 
+from typer import BadParameter
 from typer.core import TyperCommand, TyperGroup
 
 WIDEST, NARROWEST = 100, 40
@@ -27,6 +28,15 @@ class Command(TyperCommand):
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         formatter.write(page(self, ctx))
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        try:
+            return super().parse_args(ctx, args)
+        except BadParameter as error:
+            from ulna.cli.wrong_values import in_words
+
+            in_words(error)
+            raise
 
     def get_help_option(self, ctx: Any) -> Any:
         return _no_is_no(super().get_help_option(ctx))

@@ -196,4 +196,6 @@ def _check_units(length_unit: str | None, angle_unit: str | None) -> None:
 
 
 def _say(line: str) -> None:
-    print(line, file=sys.stderr)
+    from ulna.ground.errors import for_people
+
+    print(for_people(line), file=sys.stderr)

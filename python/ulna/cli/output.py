@@ -27,8 +27,10 @@ class _Out(Console):
 
 
 def say(message: str) -> None:
-    """A message for the user, on stderr."""
-    print(message, file=sys.stderr)
+    """A message for the user, on stderr; what files put into it as a terminal may have it."""
+    from ulna.ground.errors import for_people
+
+    print("\n".join(map(for_people, message.split("\n"))), file=sys.stderr)
 
 
 def print_json(document: Mapping[str, Any]) -> None:

@@ -32,7 +32,6 @@ def guard(command: Command) -> Command:
     @functools.wraps(command)
     def guarded(*args: Any, **kwargs: Any) -> None:
         from ulna.ground.errors import InputWarning, UlnaInputError, cannot_be_read
-        from ulna.ground.faults import fault
 
         try:
             with prompt_interrupts(), warnings.catch_warnings():
@@ -62,8 +61,12 @@ def guard(command: Command) -> Command:
                 _fail(said)
             if os.environ.get(TRACEBACK):
                 raise
-            print(f"error: {fault(error)} {TRACEBACK}=1 shows how it came about.", file=sys.stderr)
-            raise typer.Exit(FAULT) from None
+            _fault(error)
+        except BaseException as error:
+            # a library in Rust that gives up, which Python takes for no Exception
+            if type(error).__name__ != "PanicException" or os.environ.get(TRACEBACK):
+                raise
+            _fault(error)
 
     # typer would keep the line breaks of the source; paragraphs are all that is meant
     paragraphs = (inspect.getdoc(command) or "").split("\n\n")
@@ -82,6 +85,14 @@ def _said(error: Exception, command: Command) -> str | None:
         said = lacking(error.name or "")
         return None if said is None else f"ulna {command.__name__.replace('_', '-')}: {said}"
     return None
+
+
+def _fault(error: BaseException) -> None:
+    from ulna.ground.errors import for_people
+    from ulna.ground.faults import fault
+
+    print(f"error: {for_people(fault(error))} {TRACEBACK}=1 shows how it came about.", file=sys.stderr)
+    raise typer.Exit(FAULT) from None
 
 
 def _fail(message: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import polars as pl
@@ -74,6 +75,11 @@ def minutes_said(degrees: float) -> str:
     )
 
 
+def some_of(names: Sequence[str], most: int = 12) -> str:
+    """Names one after the other; of very many the first and the last."""
+    return ", ".join(names if len(names) <= most else [*names[: most - 2], "…", names[-1]])
+
+
 def wrong_count(header: Header, row: int, cells: list[str], width: int, separator: str, named: bool) -> str:
     """The message for a row of a text with more or fewer cells than the header (named) or the first row."""
     hint = "Correct the row."
@@ -83,7 +89,7 @@ def wrong_count(header: Header, row: int, cells: list[str], width: int, separato
         hint = f"Are the columns separated by semicolons? Write '{separator}' between them and points in numbers."
     elif any("\n" in cell for cell in cells):
         hint = "Is a quotation mark not closed? A cell runs over several lines."
-    names = ", ".join(map(header.own, header.columns))
+    names = some_of(list(map(header.own, header.columns)))
     return (
         f"{header.path}: {header.where(row)} has {len(cells)} cell{'s' * (len(cells) != 1)}, expected {width} "
         f"{'as in the header' if named else 'as in the first line'} ({names}). {hint}"
@@ -110,8 +116,8 @@ def is_decimal_comma(cell: str) -> bool:
 
 def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
     """A typed column of labels as String. Raises UlnaInputError for a type that holds none, or dates beyond dates."""
-    reason = "" if not column.dtype.is_temporal() or _are_dates(column) else ", beyond all dates"
-    if not reason:
+    reason = _unfit(column)
+    if reason is None:
         try:
             return names_of(column)
         except pl.exceptions.PolarsError as error:
@@ -120,6 +126,24 @@ def labels_of(header: Header, name: str, column: pl.Series) -> pl.Series:
         f"{header.path}: {header.named(name)} is of type {column.dtype}{reason}; expected texts or whole numbers as "
         "labels. Write it as texts."
     )
+
+
+def _unfit(column: pl.Series) -> str | None:
+    """Why Polars must not be asked for texts: it would end the process. None where it may."""
+    if column.dtype.is_nested():
+        return ""
+    zone = getattr(column.dtype, "time_zone", None)
+    if zone is not None and not _is_zone(zone):
+        return ", a time zone that is nowhere"
+    return ", beyond all dates" if column.dtype.is_temporal() and not _are_dates(column) else None
+
+
+def _is_zone(name: str) -> bool:
+    try:
+        pl.Series([0], dtype=pl.Datetime("us")).dt.replace_time_zone(name)
+    except pl.exceptions.PolarsError:
+        return False
+    return True
 
 
 _DAYS = 2_932_896

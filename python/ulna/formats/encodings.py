@@ -64,8 +64,11 @@ def decoded(path: Path, content: bytes, what: str, stated: str | None, say: str)
         raise UlnaInputError(_asking(path, content, what, say))
     try:
         return content.decode(found).removeprefix("\ufeff"), found
-    except UnicodeError:
-        raise UlnaInputError(_asking(path, content, what, say)) from None
+    except UnicodeError as error:
+        raise UlnaInputError(
+            f"{path}: looks like {found} text, but is none from byte {getattr(error, 'start', 0) + 1} on; expected "
+            f"{what}. The file is damaged, or written otherwise: say {say}, or whichever it is, or save it as UTF-8."
+        ) from None
 
 
 def sample(content: bytes, encoding: str) -> str | None:

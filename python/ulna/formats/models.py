@@ -162,6 +162,8 @@ def _expected(detail: ErrorDetails) -> str:
         "dict_type": "a table",
         "model_type": "a table",
         "model_attributes_type": "a table",
+        "dataclass_type": "a table",
+        "dataclass_exact_type": "a table",
     }
     if kind in known:
         return known[kind]
@@ -177,7 +179,9 @@ def _expected(detail: ErrorDetails) -> str:
         return f"a number of at least {context['ge']:g}"
     if kind == "less_than_equal":
         return f"a number of at most {context['le']}"
-    return detail["msg"]
+    # what the library says, in no voice of its own
+    said = re.sub(r"^(Input should be |Value error, )(a valid )?", "", detail["msg"])
+    return re.sub(r", unable to .*| or instance of \w+| found using .*", "", said)
 
 
 def key_name(location: tuple[int | str, ...], model: type[BaseModel]) -> str:

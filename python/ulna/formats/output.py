@@ -182,7 +182,8 @@ def _appeared(path: Path) -> UlnaInputError:
 def _staging(folder: Path, stem: str, suffix: str = "") -> Path:
     """A name in a folder that nobody else has. Known as under way before anything is made there, so that an
     interrupt at any moment leaves nothing behind."""
-    staging = folder / f".{stem}-{secrets.token_hex(6)}.partial{suffix}"
+    # absolute: Polars takes a name such as file:x for an address
+    staging = folder.absolute() / f".{stem}-{secrets.token_hex(6)}.partial{suffix}"
     UNDER_WAY.add(staging)
     return staging
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import stat
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +32,7 @@ def read_header(
 
     Raises UlnaInputError for a file that is no table, or none that is written like this.
     """
+    _check_is_file(path, what)
     start = read_bytes(path, what, limit=1 << 16)
     if not start.strip():
         raise UlnaInputError(f"{path}: the file is empty; expected {what}.")
@@ -48,6 +50,21 @@ def read_header(
     if words:
         raise prose(path, what)
     return named_header(header, layout, known or [])
+
+
+def _check_is_file(path: Path, what: str) -> None:
+    """A table is read more than once. Raises UlnaInputError for what gives its content only once, or without end."""
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return  # told where it is opened
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
+        return
+    kind = "a pipe" if stat.S_ISFIFO(mode) else "a device" if not stat.S_ISSOCK(mode) else "a socket"
+    raise UlnaInputError(
+        f"{path}: this is {kind}, which cannot be read twice; expected a file: {what}. Save it to a file first; "
+        "ulna measure takes CSV from stdin where - is its name."
+    )
 
 
 def named_header(header: AnyHeader, layout: Layout, known: Sequence[str]) -> AnyHeader:

@@ -126,9 +126,31 @@ def read_json(path: Path, what: str) -> tuple[dict[str, Any], str]:
         ) from None
     except (RecursionError, ValueError) as error:
         raise UlnaInputError(_beyond(path, error, what)) from None
+    if _HALF.search(text):
+        _check_letters(document, path, what)
     if not isinstance(document, dict):
-        raise UlnaInputError(f"{path}: the document is a {type(document).__name__}, expected an object: {what}.")
+        kind = _KINDS.get(type(document), "a number")
+        raise UlnaInputError(f"{path}: the document is {kind}; expected an object: {what}. Name the right file.")
     return document, sha256(content)
+
+
+_HALF = re.compile(r"\\u[dD][89a-fA-F]")
+"""How JSON writes half of a character of two; a whole one has both."""
+
+
+def _check_letters(document: Any, path: Path, what: str) -> None:
+    """No text holds half a character, which nobody can write down. Raises UlnaInputError."""
+    try:
+        json.dumps(document, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        half = error.object[error.start].encode("unicode_escape").decode()
+        raise UlnaInputError(
+            f"{path}: a text holds {half}, half a character; expected {what} as it was written. The file was changed "
+            "or damaged: make it again."
+        ) from None
+
+
+_KINDS = {list: "a list", str: "a text", bool: "true or false", type(None): "null"}
 
 
 def _no_number(constant: str) -> Any:

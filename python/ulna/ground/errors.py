@@ -7,6 +7,7 @@ line prints it and exits with code 2; no traceback, no value put in its place.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 
@@ -49,8 +50,11 @@ LONGEST = 1200
 
 
 def for_people(message: str) -> str:
-    """A message as a terminal may have it: what files put into it moves no cursor and fills no screen."""
-    return "\n".join(map(_line, message.split("\n")))
+    """A message as a terminal may have it: what files put into it moves no cursor, breaks no line and fills no screen.
+
+    Lines are those of a list ("- …"), which is the one thing that messages have lines for.
+    """
+    return "\n".join(map(_line, re.split(r"\n(?=- )", message)))
 
 
 def _line(line: str) -> str:

@@ -12,6 +12,7 @@ from pydantic import Field
 from ulna.arm.stated import Box
 from ulna.artefacts.kinds import ArtefactTable
 from ulna.formats.models import Open
+from ulna.formats.numbers import Coordinates
 from ulna.planning.spec import PlanSpec
 from ulna.planning.stands import Stand
 from ulna.simulation.study_files import artefact_table
@@ -41,7 +42,7 @@ class AskedEntry(Open):
     probe: str | None
     test_mm: float | None
     volume_mm: Box | None
-    travel_rad: list[list[float]] | None
+    travel_rad: list[Annotated[list[float], Field(min_length=2, max_length=2)]] | None
     within: WithinEntry | None
     seed: int
 
@@ -50,7 +51,7 @@ class StandEntry(Open):
     """One place of the artefact."""
 
     stand: int
-    points_mm: Annotated[list[list[float]], Field(min_length=1)]
+    points_mm: Annotated[list[Coordinates], Field(min_length=1)]
     """Where its features (or the touches of a surface) are."""
     lies: str
     """From the first point to the last: level, rising, falling, upright, hanging; nowhere of a single point."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ulna.arm.arm import Arm
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.figures import overall_figures
+from ulna.calibration.placements import figures_of
 from ulna.calibration.result import Result
+from ulna.calibration.result_file import CrossValidationFile, EvaluationFile
 from ulna.documents.content.quality import QualityRow, quality_rows
 from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
@@ -21,7 +21,10 @@ Rows = tuple[list[QualityRow], list[Said]]
 
 
 def held_out(
-    result: Result, study: Study | None, cross_validation: Taken[Any] | None, evaluation: Taken[Any] | None
+    result: Result,
+    study: Study | None,
+    cross_validation: Taken[CrossValidationFile] | None,
+    evaluation: Taken[EvaluationFile] | None,
 ) -> Rows:
     """Rows on readings that the fit has not seen, and what they are."""
     rows: list[QualityRow] = []
@@ -54,18 +57,17 @@ def _checked(result: Result, check: Study) -> list[Rows]:
     return [(quality_rows("check", before, after), [Said("held-out.check", {"readings": count})])]
 
 
-def _left_out(taken: Taken[Any]) -> Rows:
-    document = taken.value
-    values = {"by": str(document.get("by", "")), "groups": len(document["groups"]), "file": taken.file.name}
-    rows = quality_rows("left-out", document["before"], document["after"])
+def _left_out(taken: Taken[CrossValidationFile]) -> Rows:
+    file = taken.value
+    values = {"by": file.by or "", "groups": len(file.groups), "file": taken.file.name}
+    rows = quality_rows("left-out", figures_of(file.before), figures_of(file.after))
     return rows, [Said("held-out.left-out", values), *taken.remarks]
 
 
-def _evaluated(taken: Taken[Any]) -> Rows:
-    document = taken.value
-    readings = sum(int(entry.get("readings", 0)) for entry in document["artefacts"])
+def _evaluated(taken: Taken[EvaluationFile]) -> Rows:
+    readings = sum(entry.readings for entry in taken.value.artefacts)
     said = Said("held-out.evaluated", {"readings": readings, "file": taken.file.name})
-    return quality_rows("evaluated", None, document["overall"]), [said, *taken.remarks]
+    return quality_rows("evaluated", None, figures_of(taken.value.overall)), [said, *taken.remarks]
 
 
 def start_of(result: Result) -> Arm:

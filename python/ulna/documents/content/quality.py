@@ -26,7 +26,7 @@ class Summary:
     @property
     def two_sigma_mm(self) -> float:
         """2 √(RMS² - mean²): twice the standard deviation about the mean (of n, not n - 1); NaN if not known."""
-        variance = self.rms_mm**2 - self.mean_mm**2
+        variance = (self.rms_mm - self.mean_mm) * (self.rms_mm + self.mean_mm)
         return variance if np.isnan(variance) else 2.0 * float(np.sqrt(max(variance, 0.0)))
 
 

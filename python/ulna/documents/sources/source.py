@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
+
+from pydantic import BaseModel
 
 from ulna.calibration.result import Result
 from ulna.documents.languages.said import Said
+from ulna.formats.models import fill_json
 from ulna.formats.toml import check_format, read_json
+from ulna.ground.errors import UlnaInputError
 
 T = TypeVar("T")
+Model = TypeVar("Model", bound=BaseModel)
 
 
 @dataclass(frozen=True)
@@ -51,13 +56,16 @@ class Source(Generic[T]):
     used at all."""
 
 
-def json_of(format_name: str, what: str) -> Callable[[Path, Calibration], tuple[dict[str, Any], str]]:
-    """How a JSON file of Ulna's is read, as it stands; what: how messages call it, "an evaluation.json"."""
+def json_of(format_name: str, what: str, model: type[Model]) -> Callable[[Path, Calibration], tuple[Model, str]]:
+    """How a JSON file of Ulna's is read, through its model; what: how messages call it, "an evaluation.json"."""
 
-    def read(path: Path, _: Calibration) -> tuple[dict[str, Any], str]:
+    def read(path: Path, _: Calibration) -> tuple[Model, str]:
         document, digest = read_json(path, what)
         check_format(document, path, format_name)
-        return document, digest
+        try:
+            return fill_json(model, document, path), digest
+        except UlnaInputError as error:
+            raise UlnaInputError(f"{error} The file was changed or damaged: make it again.") from None
 
     return read
 

@@ -43,9 +43,18 @@ def _first(column: Any) -> Any:
 
 def _series(header: Header, name: str, batch: Any) -> pl.Series:
     try:
+        if _wide(batch.column(name).type):
+            raise ValueError
         return pl.Series(name, batch.column(name))
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, pa.ArrowException, ValueError, TypeError):
         raise UlnaInputError(
             f"{header.path}: {header.named(name)} is of type {batch.column(name).type}; expected texts or whole "
             "numbers as labels. Write it as texts."
         ) from None
+
+
+def _wide(kind: Any) -> bool:
+    """Whether there are numbers of 256 bits in it, at which Polars prints the whole of its stack."""
+    if pa.types.is_dictionary(kind):
+        return _wide(kind.value_type)
+    return pa.types.is_decimal256(kind) or any(_wide(kind.field(k).type) for k in range(kind.num_fields))

@@ -31,7 +31,7 @@ class ParquetTable(Header):
 
     @property
     def rows(self) -> int:
-        return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
+        return int(pl.scan_parquet(self.path.absolute()).select(pl.len()).collect().item())
 
     def _check_size(self, numbers: int, texts: int) -> None:
         """A thousand million equal values take some bytes of a file. Raises UlnaInputError."""
@@ -45,7 +45,7 @@ class ParquetTable(Header):
         count = sum(map(numeric, columns))
         self._check_size(count, len(columns) - count)
         try:
-            stored = pl.read_parquet(self.path, columns=[self.own(name) for name in columns])
+            stored = pl.read_parquet(self.path.absolute(), columns=[self.own(name) for name in columns])
         except UNREADABLE as error:
             self._unreadable(error)
         found = []
@@ -57,7 +57,7 @@ class ParquetTable(Header):
         return pl.DataFrame(found)
 
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
-        value = pl.scan_parquet(self.path).select(self.own(column)).slice(row - 1, 1).collect().item()
+        value = pl.scan_parquet(self.path.absolute()).select(self.own(column)).slice(row - 1, 1).collect().item()
         return bad_cell(self, row, column, "" if value is None else str(value), numeric)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
@@ -90,7 +90,7 @@ class ParquetTable(Header):
 def open_parquet(path: Path, start: bytes, what: str, layout: Layout) -> ParquetTable:
     """Raises UlnaInputError for a damaged file."""
     try:
-        return ParquetTable(path, list(pl.read_parquet_schema(path)), what=what)
+        return ParquetTable(path, list(pl.read_parquet_schema(path.absolute())), what=what)
     except UNREADABLE as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UlnaInputError(f"{path}: not a readable Parquet file ({reason}); expected {what}.") from None

@@ -88,7 +88,7 @@ class TextTable(Header):
         # All columns: where some are left out Polars does not count the cells of a row. The names come from our own
         # reading of the header, which forgives spaces and a byte-order mark.
         return pl.scan_csv(
-            self.path,
+            self.path.absolute(),
             has_header=False,
             skip_rows=self.lines,
             schema={name: types.get(name, pl.String) for name in self.columns},
@@ -230,8 +230,23 @@ class TextTable(Header):
         return last
 
     def _unreadable(self, error: Exception) -> NoReturn:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise UlnaInputError(f"{self.path}: cannot be read ({reason}); expected {self.what}. Correct it.") from None
+        """What Polars does not take, though every cell can be told apart: quotation marks within cells."""
+        row, line = 0, ""
+        with self.path.open(encoding="utf-8-sig", newline="") as stream:
+            reader = csv.reader(stream, delimiter=self.separator, strict=True)
+            try:
+                for cells in islice(reader, self.lines, None):
+                    row += 1
+                    line = self.separator.join(cells)
+            except csv.Error:
+                raise UlnaInputError(
+                    f"{self.path}: {self.where(row + 1)}: a quotation mark is closed before the end of its cell; "
+                    f'expected quotation marks around whole cells, and "" for one within. Remove or double it.'
+                ) from None
+        raise UlnaInputError(
+            f"{self.path}: its cells cannot be told apart, up to '{line[:40]}'; expected {self.what}. Save it again "
+            "with another program."
+        ) from error
 
 
 def _is_bad(cell: str, value: float | None) -> bool:
