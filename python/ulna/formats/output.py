@@ -25,6 +25,9 @@ _NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 #: results of this process that are in their places
 FINISHED: list[Path] = []
 
+#: held while a place is made or taken away in which a result will be staged
+_PARENTS = threading.Lock()
+
 #: held while results move from staging to their places
 MOVING = threading.Lock()
 
@@ -78,11 +81,13 @@ def output_folder(
     folder = Path(folder)
     check_output(folder, [*names, *instead_of], force)
     place = folder.resolve() if folder.is_symlink() else folder
-    staging = None
+    staging, made = None, list[Path]()
     try:
         try:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            staging = _staged_folder(place)
+            with _PARENTS:
+                made += _missing(place.parent)
+                place.parent.mkdir(parents=True, exist_ok=True)
+                staging = _staged_folder(place)
         except OSError as error:
             raise _unwritable(folder, error) from None
         try:
@@ -106,6 +111,7 @@ def output_folder(
         if staging is not None:
             shutil.rmtree(staging, ignore_errors=True)
             UNDER_WAY.discard(staging)
+        _leave(made)
 
 
 def _staged_folder(place: Path) -> Path:
@@ -140,11 +146,13 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
         raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
     if path.exists() and not force:
         raise UlnaInputError(f"{path}: exists already and is not overwritten. Name another file, or give --force.")
-    staged = _staging(path.parent, path.stem, path.suffix)
+    staged, made = _staging(path.parent, path.stem, path.suffix), list[Path]()
     try:
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            staged.touch(mode=0o600, exist_ok=False)
+            with _PARENTS:
+                made += _missing(path.parent)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                staged.touch(mode=0o600, exist_ok=False)
         except OSError as error:
             raise _unwritable(path, error) from None
         try:
@@ -170,6 +178,20 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
         with suppress(OSError):
             staged.unlink()
         UNDER_WAY.discard(staged)
+        _leave(made)
+
+
+def _missing(folder: Path) -> list[Path]:
+    """What is to be made so that a folder is there, the innermost first."""
+    return [each for each in (folder, *folder.parents) if not each.exists()]
+
+
+def _leave(made: list[Path]) -> None:
+    """Takes folders away that were made for a result, where none came into them."""
+    with _PARENTS:
+        for folder in made:
+            with suppress(OSError):
+                folder.rmdir()
 
 
 def _appeared(path: Path) -> UlnaInputError:
