@@ -124,7 +124,10 @@ def hull(points: F64) -> F64:
                 kept.pop()
             kept.append((x, y))
         ends.append(kept[:-1])
-    return np.array(ends[0] + ends[1])
+    corners = ends[0] + ends[1]
+    # of corners above one another, which processors round apart, the same is always the first
+    first = min(range(len(corners)), key=lambda k: tuple(round(each, 3) for each in corners[k]))
+    return np.array(corners[first:] + corners[:first])
 
 
 def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
