@@ -218,7 +218,7 @@ class Fitted:
     @property
     def termination(self) -> str:
         """ "converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
-        "max-iterations", "poor-minimum", "off-scale"."""
+        "max-iterations", "poor-minimum", "held-poor", "off-scale"."""
     @property
     def converged(self) -> bool: ...
     @property

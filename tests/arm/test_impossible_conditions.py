@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +35,24 @@ def test_a_temperature_in_another_unit_is_asked_about(tmp_path: Path, wrong: flo
     with pytest.raises(UlnaInputError, match=r"q.csv: row 4 .*column 'temperature': got .*expected °C.*kelvin"):
         ulna.measure(of, tmp_path / "q.csv", probe="bent", out=tmp_path / "points.csv")
     assert not (tmp_path / "points.csv").exists()
+
+
+@pytest.mark.parametrize(("said", "asked"), [([66.0, 70.5, 77.0], True), ([66.0, 20.0, 77.0], False), ([19.0], False)])
+def test_temperatures_that_would_be_in_fahrenheit_are_asked_about(
+    tmp_path: Path, said: list[float], asked: bool
+) -> None:
+    """Once, and they are taken as they stand."""
+    many = np.resize(said, 5)
+    columns = {f"q{k + 1}": Q[:, k] for k in range(3)} | {"temperature": many}
+    pl.DataFrame(columns).write_csv(tmp_path / "q.csv")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ulna.measure(arm(tmp_path), tmp_path / "q.csv", probe="bent", out=tmp_path / "points.csv")
+    told = [str(each.message) for each in caught if "°F" in str(each.message)]
+    assert len(told) == asked
+    assert not asked or "q.csv: temperature: from 66 to 77. Are they in °F?" in told[0]
+    points = pl.read_csv(tmp_path / "points.csv").select("x", "y", "z").to_numpy()
+    np.testing.assert_allclose(points, arm(tmp_path).tip(Q, "bent", temperature_c=many), atol=1e-9)
 
 
 @pytest.mark.parametrize("right", [-100.0, -20.0, 0.0, 68.0, 200.0])

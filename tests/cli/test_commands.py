@@ -165,8 +165,23 @@ def test_what_is_left_out_was_not_fitted(tmp_path: Path) -> None:
     assert shift == pytest.approx(-5.0, abs=1e-6)
 
 
-def test_everything_held_is_an_evaluation(tmp_path: Path) -> None:
+def test_an_arm_that_is_held_and_explains_nothing_is_not_good(tmp_path: Path) -> None:
     study = write_lengths(tmp_path, noise="[noise]\nencoder = 5e-6", fit='hold = ["*"]')
+    done = run("calibrate", study, "-o", tmp_path / "out")
+    assert done.returncode == 1, done.stdout
+    document = strict_json((tmp_path / "out" / "result.json").read_text())
+    assert (document["fit"]["termination"], document["fit"]["converged"]) == ("held-poor", False)
+    assert document["fit"]["chi2_per_dof"] > 1e4
+    assert "every parameter is held" in done.stdout
+    assert "times what the stated noise explains" in " ".join(done.stdout.split())
+    page = run("report", tmp_path / "out", "-o", tmp_path / "out.html")
+    assert page.returncode == 0
+    assert "does NOT explain" in (tmp_path / "out.html").read_text()
+
+
+def test_everything_held_is_an_evaluation(tmp_path: Path) -> None:
+    study = write_lengths(tmp_path, noise="[noise]\nencoder = 5e-6\nseat = 0.01", fit='hold = ["*"]')
+    platinum().save(tmp_path / "start.toml", force=True)
     done = run("calibrate", study, "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     document = strict_json((tmp_path / "out" / "result.json").read_text())

@@ -68,6 +68,10 @@ class Condition(ABC):
     """Its values; None: any."""
     within: ClassVar[tuple[float, float]] = (-math.inf, math.inf)
     """Least and most that it can be, in its unit."""
+    usual: ClassVar[tuple[float, float]] = (-math.inf, math.inf)
+    """Where all of many are beyond these, another unit is asked about, and they are taken as they stand."""
+    doubt: ClassVar[str] = ""
+    """What is asked then."""
     remedy: ClassVar[str] = "Correct it."
     """What is said where it cannot be so."""
     option: ClassVar[str | None] = None
@@ -117,6 +121,11 @@ class Condition(ABC):
         found: Bool = (values < low) | (values > high)
         return found if self.allowed is None else found | ~np.isin(values, self.allowed)
 
+    def doubtful(self, values: F64) -> bool:
+        """Whether all of them are such as readings in another unit would be."""
+        low, high = self.usual
+        return bool(values.size) and bool((values > high).all() or (values < low).all())
+
     def known(self, given: Any) -> bool:
         """Whether it is given of every pose."""
         return given is not None and bool(np.isfinite(given).all())
@@ -130,6 +139,8 @@ class Temperature(Condition):
     common, option = True, "--temperature"
     within = (-100.0, 200.0)  # encoders stand no more
     remedy = "Is it in kelvin? Write it in °C."
+    usual = (-20.0, 50.0)  # of rooms in which people measure
+    doubt = "Are they in °F? They are taken as °C; write them in °C."
     vain = "its links do not grow with temperature"
     missing = "the temperature is not given for every pose"
     unsaid = "do not all say how warm it was"

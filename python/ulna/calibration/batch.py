@@ -18,6 +18,7 @@ from typing import Any, Literal
 from ulna.calibration.calibrate import calibrate
 from ulna.calibration.provenance import provenance
 from ulna.calibration.result import FILES, RESIDUALS, Result
+from ulna.formats.names import as_text
 from ulna.formats.output import refuse_inputs, write_file
 from ulna.formats.toml import read_json
 from ulna.ground.arrays import Progress
@@ -90,7 +91,7 @@ def studies_in(folder: Path, only: str = "*") -> dict[str, Path]:
     found = {}
     for path in sorted(folder.rglob("*.toml")):
         if path.is_file() and _is_study(path):
-            found[path.relative_to(folder).with_suffix("").as_posix()] = path
+            found[as_text(path.relative_to(folder).with_suffix("").as_posix())] = path
     if not found:
         raise UlnaInputError(
             f'{folder}: has no study in it; expected files with format = "ulna-study/1", at any depth.'

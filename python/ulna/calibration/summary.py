@@ -70,7 +70,7 @@ class FitSummary:
 
     termination: str
     """"converged-cost", "converged-step", "exact", "nothing-to-fit", "no-progress",
-    "max-iterations", "poor-minimum", "off-scale"."""
+    "max-iterations", "poor-minimum", "held-poor", "off-scale"."""
     converged: bool
     iterations: int
     evaluations: int

@@ -9,6 +9,7 @@ import typer
 from ulna.cli.commands import Commands
 from ulna.cli.completing import get_ready
 from ulna.cli.interrupting import ENDING, leave_interrupted, say_interrupted
+from ulna.cli.streams import open_streams
 
 app = typer.Typer(
     name="ulna",
@@ -46,6 +47,7 @@ def ulna(
 
 def main() -> None:
     """The console script."""
+    open_streams()
     get_ready()
     try:
         app(prog_name="ulna")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import typer
 
 from ulna.cli.options import All, Force, Json, Judge, OutFolder, StudyArgument
@@ -54,7 +52,7 @@ def calibrate(
         result.save(out, force)
     suspected = None if result.fit.converged else suspicion(loaded, result)
     if as_json:
-        result.write_json(sys.stdout.write)
+        result.write_json(output.write_json)
     elif everything:
         output.print_renderable(*calibration_report(result))
     else:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console, RenderableType
 from rich.table import Table
 
+from ulna.cli.streams import knows_all
+
 if TYPE_CHECKING:
     from ulna.ground.arrays import Progress  # loads NumPy, which a list of names does not need
 
@@ -35,8 +37,16 @@ def say(message: str) -> None:
 
 def print_json(document: Mapping[str, Any]) -> None:
     """The machine form, on stdout."""
-    json.dump(document, sys.stdout, indent=1, ensure_ascii=False, allow_nan=False)
+    for piece in json.JSONEncoder(indent=1, ensure_ascii=False, allow_nan=False).iterencode(document):
+        write_json(piece)
     sys.stdout.write("\n")
+
+
+def write_json(piece: str) -> None:
+    """A piece of the machine form, on stdout: letters that it does not know are written as ASCII, as JSON can."""
+    if not (piece.isascii() or knows_all(sys.stdout)):
+        piece = "".join(each if each.isascii() else json.dumps(each)[1:-1] for each in piece)
+    sys.stdout.write(piece)
 
 
 def print_renderable(*parts: RenderableType) -> None:

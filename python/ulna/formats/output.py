@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ulna.formats.arriving import arrive
 from ulna.formats.moving import flush, place_new, umask
+from ulna.formats.names import check_path
 from ulna.ground.errors import UlnaInputError
 
 #: staging places of this process: whoever must end it at once takes them away first
@@ -79,6 +80,7 @@ def output_folder(
     written.
     """
     folder = Path(folder)
+    check_path(folder)
     check_output(folder, [*names, *instead_of], force)
     place = folder.resolve() if folder.is_symlink() else folder
     staging, made = None, list[Path]()
@@ -142,6 +144,7 @@ def write_file(path: str | Path, content: str | bytes, force: bool = False) -> N
 def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
     """A staging path to write one file to, of any size; it appears at `path` when the block ends without an error."""
     path = Path(path)
+    check_path(path)
     if path.is_dir():
         raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
     if path.exists() and not force:

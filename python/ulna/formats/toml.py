@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from ulna.formats.names import check_path
 from ulna.ground.errors import UlnaInputError, nearest
 
 #: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
@@ -29,6 +30,7 @@ def read_bytes(path: Path, what: str, limit: int = -1) -> bytes:
     """
     if "\0" in str(path):
         raise UlnaInputError(f"{str(path)!r}: a path holds no character 0; expected the path of {what}. Correct it.")
+    check_path(path)
     try:
         with path.open("rb") as stream:
             return stream.read(limit)

@@ -26,7 +26,7 @@ from ulna.measuring.tip_uncertainty import COVARIANCE, DIAGONAL, TipUncertainty
 from ulna.measuring.units import rad_per
 from ulna.study.readings.checks import Outside, check_scale
 from ulna.study.readings.columns import check_columns, known_columns
-from ulna.study.readings.conditions import check_values, columns_of
+from ulna.study.readings.conditions import check_values, columns_of, doubt_values
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 
 
@@ -100,6 +100,7 @@ class MeasureJob:
                 "out."
             )
         self._outside = Outside(self.arm, "q")
+        self._seen: set[Condition] = set()
         self.rows = 0
 
     @property
@@ -201,6 +202,9 @@ class MeasureJob:
             at = self._numbers.index(columns[0])
             values = np.ascontiguousarray(piece.numbers[:, at : at + len(columns)])
             check_values(values, columns, condition, self.header, row)
+            if condition not in self._seen:
+                self._seen.add(condition)
+                doubt_values(values, columns, condition, self.header)
             said[condition.said] = values[:, 0] if columns == [condition.name] else values
         return self.arm.conditions(len(piece), **said)
 

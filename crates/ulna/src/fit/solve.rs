@@ -197,8 +197,8 @@ pub fn solve_from(
     }
     way.settle(&mut report)?;
     let ended = report.termination.converged() || search_reason.is_some();
-    if ended && !free.is_empty() && is_poor(way.problem, &way.parameters(), report.cost) {
-        report.termination = Termination::PoorMinimum;
+    if ended && is_poor(way.problem, &way.parameters(), report.cost) {
+        report.termination = if free.is_empty() { Termination::HeldPoor } else { Termination::PoorMinimum };
     }
     report.cost_start = cost_start;
     let (mut parameters, pins, factors) = (way.parameters(), way.pins, way.factors);

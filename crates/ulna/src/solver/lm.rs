@@ -23,6 +23,8 @@ pub enum Termination {
     /// Ended at residuals far beyond what the size of the arm explains, and a search found nothing better; or, with
     /// readings that know no length, at an arm whose joints hardly move its tip.
     PoorMinimum,
+    /// Every parameter is held, and residuals are far beyond what the size of the arm explains.
+    HeldPoor,
     /// Reached, but every length of the arm is off its start by one factor that no drawing could be off by.
     OffScale,
 }
@@ -38,6 +40,7 @@ impl Termination {
             Termination::NoProgress => "no-progress",
             Termination::MaxIterations => "max-iterations",
             Termination::PoorMinimum => "poor-minimum",
+            Termination::HeldPoor => "held-poor",
             Termination::OffScale => "off-scale",
         }
     }
@@ -46,7 +49,11 @@ impl Termination {
     pub fn converged(self) -> bool {
         !matches!(
             self,
-            Termination::NoProgress | Termination::MaxIterations | Termination::PoorMinimum | Termination::OffScale
+            Termination::NoProgress
+                | Termination::MaxIterations
+                | Termination::PoorMinimum
+                | Termination::HeldPoor
+                | Termination::OffScale
         )
     }
 }

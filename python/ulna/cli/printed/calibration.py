@@ -31,6 +31,7 @@ _ENDINGS = {
     "no-progress": "NOT converged: no step made progress",
     "max-iterations": "NOT converged: the allowed iterations were used up",
     "poor-minimum": "NOT converged: the fit ended in a poor minimum, and so did the search",
+    "held-poor": "NOT good: every parameter is held, and this arm does not explain the readings",
     "off-scale": "NOT to be believed: the readings are met, but every length is off the arm file by one factor",
 }
 

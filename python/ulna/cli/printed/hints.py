@@ -45,7 +45,7 @@ def what_to_try(result: Result, suspected: Suspicion | None = None) -> str:
     wrong_size = result.fit.common_factor is not None or bool(beyond_reach(result))
     if suspected is not None:
         hints.append(f"They are met to {figure_mm(suspected.rms_mm)} mm, rms, {suspected.if_so}. {suspected.to_do}")
-    if result.fit.termination == "poor-minimum" and not moved and not wrong_size and suspected is None:
+    if result.fit.termination in ("poor-minimum", "held-poor") and not moved and not wrong_size and suspected is None:
         hints.append(_if_that_is_its_noise(result.fit))
     if result.fit.termination == "off-scale":
         hints.append(

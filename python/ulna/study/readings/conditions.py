@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -11,7 +12,7 @@ import polars as pl
 from ulna.arm.conditions import CONDITIONS, Condition
 from ulna.formats.header import Header
 from ulna.ground.arrays import F64, I64
-from ulna.ground.errors import UlnaInputError
+from ulna.ground.errors import InputWarning, UlnaInputError
 
 _COLUMN = re.compile(
     "|".join(f"{prefix}{'[0-9]*' if each.of_joints else ''}" for each in CONDITIONS for prefix in each.fields)
@@ -66,6 +67,7 @@ def said_of(frame: pl.DataFrame, joints: int, header: Header, row: I64) -> dict[
         if own:
             values = np.ascontiguousarray(frame.select(own).to_numpy(), dtype=np.float64)
             check_values(values, own, condition, header, row)
+            doubt_values(values, own, condition, header)
             found[condition.fields[prefix]] = values[:, 0] if own == [prefix] else values
     return found
 
@@ -78,6 +80,17 @@ def check_values(values: F64, columns: Sequence[str], condition: Condition, head
         raise UlnaInputError(
             f"{header.path}: {header.at(int(row[k]), columns[column])}: got {values[k, column]:g}; expected "
             f"{condition.expected}. {condition.remedy}"
+        )
+
+
+def doubt_values(values: F64, columns: Sequence[str], condition: Condition, header: Header) -> None:
+    """Warns with InputWarning where all of them look like another unit's."""
+    if condition.doubtful(values):
+        heads = columns[0] if len(columns) == 1 else f"{columns[0]} … {columns[-1]}"
+        warnings.warn(
+            f"{header.path}: {heads}: from {values.min():g} to {values.max():g}. {condition.doubt}",
+            InputWarning,
+            stacklevel=3,
         )
 
 
