@@ -7,6 +7,7 @@ squares add up.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 REFERENCE_C = 20.0
@@ -35,6 +36,10 @@ class Budget:
             return None
         return math.sqrt(sum(each.u_mm**2 for each in self.contributors))
 
+    def and_(self, other: Budget) -> Budget:
+        """Both; what is left out is said once."""
+        return Budget([*self.contributors, *other.contributors], list(dict.fromkeys([*self.left_out, *other.left_out])))
+
     def times(self, factor: float, why: str) -> Budget:
         """Of a value that changes by so much when a length does."""
         scaled = [
@@ -42,6 +47,37 @@ class Budget:
             for each in self.contributors
         ]
         return Budget(scaled, self.left_out)
+
+
+@dataclass(frozen=True)
+class Share:
+    """How a figure of several artefacts changes with one of them."""
+
+    artefact: str
+    per_mm: float
+    """The figure's change for each mm that this artefact is longer than its certificate says."""
+    budget: Budget
+
+
+def of_several(shares: Sequence[Share]) -> Budget:
+    """What artefacts do to one figure, to first order: each has a certificate and an expansion of its own, all have the
+    same temperature. What is not of an artefact's length does not count here."""
+    found = []
+    for name in _OF_LENGTHS:
+        own = [(share, each.u_mm) for share in shares for each in share.budget.contributors if each.name == name]
+        if not own:
+            continue
+        moved = [share.per_mm * u_mm for share, u_mm in own]
+        u_mm = abs(math.fsum(moved)) if name == _IN_COMMON else math.hypot(*moved)
+        terms = " + ".join(f"{share.per_mm:.3g} · {share.artefact}" for share, _ in own)
+        how = "as one, its sign kept" if name == _IN_COMMON else "each by itself"
+        found.append(Contributor(name, u_mm, f"u({name}) of {terms}, {how}"))
+    left_out = [said for share in shares for said in share.budget.left_out]
+    return Budget(found, list(dict.fromkeys(left_out)))
+
+
+_IN_COMMON = "temperature"
+_OF_LENGTHS = ("calibration", _IN_COMMON, "expansion")
 
 
 @dataclass(frozen=True)

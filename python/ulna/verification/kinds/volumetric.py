@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Literal
 
 import numpy as np
 from pydantic import Field
 
 from ulna.formats.numbers import Count, Shares
+from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.verification.bench import Bench, Found, counted, within_shares
+from ulna.verification.bench import Bench, Found, Length, counted, within_shares
+from ulna.verification.budget import Share, of_several
 from ulna.verification.figures.asme_b89_4_22 import (
     VOLUMETRIC_2RMS,
     VOLUMETRIC_2S,
@@ -72,19 +74,50 @@ def _evaluate(name: str, table: VolumetricTest, touches: Touches, bench: Bench) 
     _, *spreads = asme(np.array([single.value_mm for single in singles]))
     longest = max((each for each, _ in measured), key=lambda each: each.calibrated_mm)
     standing = bench.surroundings.standing()
-    factors = {"Volumetric_2S": 2.0, "Volumetric_half_range": 1.0, "Volumetric_2RMS": 2.0}
     figures = [(VOLUMETRIC_MAX, singles)]
     for figure in spreads:
         key = figure.definition.key
-        # a bar's own error is in all deviations of it: it moves their mean, not their spread
-        own = longest.budget if key == "Volumetric_2RMS" else standing
-        budget = own.times(factors[key], "as the figure is of the deviations")
+        if key in _BY_BAR:
+            budget = of_several(_shares_of(measured, _BY_BAR[key])).and_(standing.times(_FACTORS[key], _AS_FIGURE))
+        else:
+            budget = longest.budget.times(_FACTORS[key], _AS_FIGURE)
         figures.append((figure.definition, [Single(Labels(), float(figure.value), budget)]))
     bars = {each.name: each.calibrated_mm for each, _ in measured}
     departures = counted("lengths measured", len(singles), table.positions)
     departures += counted("bars", len(bars), table.lengths)
     departures += _shares(bars, table, bench)
     return Found(figures, departures)
+
+
+def _spread_by_deviation(e_mm: F64) -> F64:
+    """(n,) the change of two standard deviations of (n,) deviations with each of them; 0 where all are alike."""
+    away = e_mm - e_mm.mean()
+    spread = float(np.sqrt((away**2).sum() * (len(e_mm) - 1)))
+    return np.asarray(2.0 * away / spread if spread > 0.0 else 0.0 * away)
+
+
+def _half_range_by_deviation(e_mm: F64) -> F64:
+    """(n,) the change of half the range of (n,) deviations with each of them."""
+    by = np.zeros(len(e_mm))
+    by[e_mm.argmax()] += 0.5
+    by[e_mm.argmin()] -= 0.5
+    return by
+
+
+_FACTORS = {"Volumetric_2S": 2.0, "Volumetric_half_range": 1.0, "Volumetric_2RMS": 2.0}
+_NOTHING = 1e-9
+_AS_FIGURE = "as the figure is of the deviations"
+_BY_BAR = {"Volumetric_2S": _spread_by_deviation, "Volumetric_half_range": _half_range_by_deviation}
+"""Of one bar all deviations err alike, which moves their mean, not their spread; of several bars each by its own."""
+
+
+def _shares_of(measured: list[tuple[Length, Single]], by_deviation: Callable[[F64], F64]) -> list[Share]:
+    """Of each bar: an error of its length is in all its deviations, with the other sign."""
+    change = -by_deviation(np.array([single.value_mm for _, single in measured]))
+    name = np.array([length.name for length, _ in measured])
+    bars = {length.name: length for length, _ in measured}
+    shares = [Share(own, float(change[name == own].sum()), bar.budget) for own, bar in bars.items()]
+    return [share for share in shares if abs(share.per_mm) > _NOTHING]
 
 
 def _shares(bars: dict[str, float], table: VolumetricTest, bench: Bench) -> list[str]:
