@@ -49,7 +49,9 @@ wheel: build ## build the wheel, examples and all, into target/wheels/
 # ---------------------------------------------------------------- test
 
 .PHONY: test
-test: prerequisites lint types rust-test python-test docs ## the whole suite: Rust, Python, lint, types, docs
+test: prerequisites ## the whole suite: Rust, Python, lint, types, docs
+	@$(MAKE) --jobs=2 --output-sync=target build rust-test # one core is enough for linking
+	@$(MAKE) lint types python-test docs
 
 .PHONY: prerequisites
 prerequisites:
@@ -73,7 +75,7 @@ types: build ## mypy --strict
 	$(BIN)/mypy
 
 .PHONY: rust-test
-rust-test: build ## tests of the core, and its documentation with warnings as errors
+rust-test: ## tests of the core, and its documentation with warnings as errors
 	cargo test --locked --profile checked --package ulna
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --workspace --quiet
 
