@@ -48,6 +48,9 @@ COMMANDS: dict[str, tuple[list[str], int | None]] = {
         None,
     ),
     "plan.txt": (["plan", "examples/platinum/platinum.toml", "examples/platinum/plan.toml", "-o", "out/plan"], None),
+    "compare-simulate.txt": (["simulate", "examples/platinum/next-year.toml", "-o", "out/next-year"], 4),
+    "compare-calibrate.txt": (["calibrate", "out/next-year/study.toml", "-o", "out/next-year-result"], 3),
+    "compare.txt": (["compare", "out/demo", "out/next-year-result"], None),
     "verify-plan.txt": (
         f"verify --make-plan iso-10360-12 --play {TRUTH} --seed 1 -o out/acceptance".split(),
         None,

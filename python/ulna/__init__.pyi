@@ -13,6 +13,7 @@ from .calibration.cross_validate import CrossValidation, cross_validate
 from .calibration.evaluate import Evaluation, evaluate
 from .calibration.identify import identify
 from .calibration.result import Result
+from .comparison.compare import Comparison, compare
 from .ground.errors import InputWarning, UlnaInputError
 from .measuring.measure import measure
 from .measuring.measured import Length, Measured
@@ -34,6 +35,7 @@ __all__ = [
     "Artefact",
     "Assessment",
     "Batch",
+    "Comparison",
     "CrossValidation",
     "Effects",
     "Evaluation",
@@ -60,6 +62,7 @@ __all__ = [
     "__version__",
     "batch",
     "calibrate",
+    "compare",
     "cross_validate",
     "evaluate",
     "identify",

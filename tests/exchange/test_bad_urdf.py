@@ -113,7 +113,7 @@ def test_an_unknown_link(tmp_path: Path) -> None:
     [
         (b" \n", ("the file is empty", "a robot description")),
         (URDF.encode("utf-16"), ("UTF-16", "Save it as UTF-8")),
-        (b"<robot>" + b" " * (16 << 20), ("more than 16 MB", "Check the path")),
+        (b"<robot>" + b" " * (16 << 20), ("more than 8 MB", "Check the path")),
     ],
 )
 def test_a_file_that_cannot_be_one(tmp_path: Path, content: bytes, fragments: tuple[str, ...]) -> None:

@@ -26,6 +26,7 @@ FLOORS = {
     "simulation": 6,
     "calibration": 6,
     "proposals": 6,
+    "comparison": 7,
     "verification": 7,
     "planning": 7,
     "reproduce": 7,

@@ -93,7 +93,7 @@ def test_a_device_that_never_ends(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     with path.open("wb") as file:
         file.truncate(1 << 40)
-    with pytest.raises(UlnaInputError, match="more than 16 MB, too large"):
+    with pytest.raises(UlnaInputError, match="more than 8 MB, too large"):
         Study.load(path)
 
 

@@ -65,7 +65,8 @@ def json_of(format_name: str, what: str, model: type[Model]) -> Callable[[Path, 
         try:
             return fill_json(model, document, path), digest
         except UlnaInputError as error:
-            raise UlnaInputError(f"{error} The file was changed or damaged: make it again.") from None
+            said = str(error).removesuffix(" Add it.")  # nobody writes such a file by hand
+            raise UlnaInputError(f"{said} The file was changed or damaged: make it again.") from None
 
     return read
 

@@ -1,0 +1,52 @@
+"""`ulna compare`: what has moved between calibrations of one arm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ulna.cli.options import All, Json
+from ulna.cli.running import guard
+
+
+@guard
+def compare(
+    results: Annotated[
+        list[Path],
+        typer.Argument(metavar="RESULT…", help="Two to six results, the earliest first.", show_default=False),
+    ],
+    probe: Annotated[
+        str | None,
+        typer.Option("--probe", metavar="NAME", help="With which lengths are compared; default: the first of both."),
+    ] = None,
+    shared_u: Annotated[
+        float,
+        typer.Option(
+            "--shared-u",
+            metavar="RATIO",
+            help="u of the length of the artefact on which all rest, over that length; 0: they rest on others.",
+        ),
+    ] = 0.0,
+    everything: All = False,
+    as_json: Json = False,
+) -> None:
+    """Say what has moved between calibrations of one arm, and whether their uncertainties explain it.
+
+    Each is compared with the next: first what it does to lengths all over the volume, then chi² of the difference over
+    what both determined, then each parameter. What neither determined and how the base stands make no difference. Exit
+    code 1 where it moved by more than both uncertainties explain.
+
+    Example: [bold]ulna compare out-2025 out-2026[/bold]
+    """
+    from ulna.cli import output
+    from ulna.cli.printed.comparison import comparison_report
+    from ulna.comparison.compare import compare as run_compare
+
+    found = run_compare(*results, probe=probe, shared_u=shared_u)
+    if as_json:
+        output.print_json(found.as_dict())
+    else:
+        output.print_renderable(*comparison_report(found, everything))
+    raise typer.Exit(int(any(step.moved for step in found.steps)))

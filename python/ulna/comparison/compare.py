@@ -1,0 +1,212 @@
+"""What has moved between calibrations of one arm: what it does to lengths, whether both uncertainties explain it, and
+which parameters it is. Lengths mm."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ulna.arm.given import ArmLike
+from ulna.comparison.determined import Determined, determined
+from ulna.comparison.extreme import p_of_largest
+from ulna.comparison.pair import Pair, calibrated, pair
+from ulna.comparison.poses import Lengths, lengths
+from ulna.ground.arrays import F64, I64, Bool
+from ulna.ground.errors import UlnaInputError
+from ulna.ground.quantiles import normal, student
+from ulna.ground.version import VERSION
+
+FORMAT = "ulna-comparison/1"
+LENGTHS = 2000
+"""Compared, all over the volume."""
+BANDS = 4
+"""Of lengths, of which figures are told."""
+MOST = 6
+"""Calibrations in one comparison."""
+_EXACT = 1e-12
+"""Of a length, or of what a drawing leaves open: a smaller u is that of something that was held."""
+SURE = 0.05
+"""A difference that chance makes less often is one."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """Lengths of a like size."""
+
+    least_mm: float
+    most_mm: float
+    count: int
+    rms_mm: float
+    """Of the differences, later less earlier."""
+    largest_mm: float
+    """Of the differences, with its sign."""
+    u_mm: float
+    """Standard uncertainty of that difference."""
+    expanded_mm: float
+    """U = k u for 95 %."""
+    at_mm: list[float]
+    """Its middle, in the earlier base frame."""
+    length_mm: float
+    en: float
+    """The most that |difference| / U is in this band: E_n as of ISO/IEC 17043; of some lengths in twenty it is above 1
+    by chance."""
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A parameter, without what nobody determined and without moves of the base."""
+
+    name: str
+    unit: str
+    delta: float
+    u: float
+    """Standard uncertainty."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Two calibrations."""
+
+    before: str
+    after: str
+    probe: str
+    shared_u: float
+    chi2: float
+    rank: int
+    """Combinations of parameters that both determined, of which χ² is."""
+    degrees_of_freedom: float | None
+    """Of the noise, where a calibration estimated it; None: both knew it."""
+    p_value: float
+    """How often the uncertainties alone make as large a χ²."""
+    p_of_largest: float
+    """How often they make as large a change of any length, by its u."""
+    not_determined: int
+    bands: list[Band]
+    parameters: list[Moved]
+    """Those of which a difference is known, the surest difference first."""
+
+    @property
+    def moved(self) -> bool:
+        """By more than both uncertainties explain."""
+        return 2.0 * min(self.p_value, self.p_of_largest) < SURE  # two looks, each at half
+
+    @property
+    def largest(self) -> Band | None:
+        """With the largest difference of all lengths; None where no length is determined by both."""
+        return max(self.bands, key=lambda band: abs(band.largest_mm), default=None)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Calibrations one after the other."""
+
+    steps: list[Compared]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The machine form."""
+        return {
+            "format": FORMAT,
+            "steps": [asdict(step) | {"moved": step.moved} for step in self.steps],
+            "provenance": {"program": "ulna", "version": VERSION},
+        }
+
+
+def compare(*calibrations: ArmLike, probe: str | None = None, shared_u: float = 0.0, seed: int = 0) -> Comparison:
+    """Two to six calibrations of one arm, results or their paths, the earliest first; each is compared with the next.
+
+    probe: with which lengths are compared; None: the first that both have. shared_u: relative standard uncertainty of
+    the length of the artefact on which both rest (u / length), 0 where they had others.
+
+    Raises UlnaInputError for what is no calibration, has no uncertainty or is another arm.
+    """
+    if not 2 <= len(calibrations) <= MOST:
+        raise UlnaInputError(
+            f"compare: got {len(calibrations)} calibration{'s' * (len(calibrations) != 1)}; expected 2 to {MOST}, the "
+            "earliest first. Name them."
+        )
+    if not 0.0 <= shared_u < 0.01:
+        raise UlnaInputError(
+            f"compare: shared u {shared_u:g}; expected u of the artefact's length over its length, such as 2e-6. "
+            "Correct it."
+        )
+    labels = [_label(given, number) for number, given in enumerate(calibrations, start=1)]
+    known = [calibrated(given, label) for given, label in zip(calibrations, labels, strict=True)]
+    pairs = [pair(one, other, probe, shared_u) for one, other in pairwise(known)]
+    return Comparison([_compared(each, lengths(each, LENGTHS, seed)) for each in pairs])
+
+
+def _label(given: ArmLike, number: int) -> str:
+    return str(given) if isinstance(given, str) or hasattr(given, "__fspath__") else f"calibration {number}"
+
+
+def _compared(both: Pair, found: Lengths) -> Compared:
+    what = determined(both, found.by_parameter)
+    freedom = both.degrees_of_freedom
+    change, u, sure = _changes(both, found)
+    rows = np.flatnonzero(sure)
+    beyond = 1.0
+    if len(rows):
+        beyond = p_of_largest(both, found.by_parameter[rows], u[rows], float((np.abs(change[rows]) / u[rows]).max()))
+    return Compared(
+        both.before.label,
+        both.after.label,
+        both.probe,
+        both.shared_u,
+        what.chi2,
+        what.rank,
+        freedom if np.isfinite(freedom) else None,
+        what.p_value,
+        beyond,
+        what.lost,
+        _bands(both, found, change, u, rows),
+        _moved(both, what),
+    )
+
+
+def _changes(both: Pair, found: Lengths) -> tuple[F64, F64, Bool]:
+    """(K,) later less earlier, its standard uncertainty, and whether neither left that length open."""
+    change = found.after_mm - found.before_mm
+    by = found.by_parameter
+    u = np.sqrt(np.maximum(np.einsum("kp,pq,kq->k", by, both.covariance, by, optimize=True), 0.0))
+    open_mm = np.abs(by @ (both.lost * both.scale).T).max(axis=1, initial=0.0)
+    moves_mm = max(both.before.noise.moves_mm, both.after.noise.moves_mm)
+    return change, u, (open_mm <= moves_mm) & (u > _EXACT * found.before_mm)
+
+
+def _bands(both: Pair, found: Lengths, change: F64, u: F64, sure: I64) -> list[Band]:
+    freedom = both.degrees_of_freedom
+    k = normal(0.975) if np.isinf(freedom) else float(np.ravel(student(freedom, 0.975))[0])
+    edges = np.linspace(0.0, float(found.before_mm.max()), BANDS + 1)
+    bands = []
+    for low, high in pairwise(edges.tolist()):
+        rows = sure[(found.before_mm[sure] > low) & (found.before_mm[sure] <= high)]
+        if len(rows):
+            bands.append(_band(low, high, rows, change, k * u, u, found))
+    return bands
+
+
+def _band(low: float, high: float, rows: I64, change: F64, expanded: F64, u: F64, found: Lengths) -> Band:
+    at = rows[int(np.abs(change[rows]).argmax())]
+    return Band(
+        low,
+        high,
+        len(rows),
+        float(np.sqrt((change[rows] ** 2).mean())),
+        float(change[at]),
+        float(u[at]),
+        float(expanded[at]),
+        found.middle_mm[at].tolist(),
+        float(found.before_mm[at]),
+        float((np.abs(change[rows]) / expanded[rows]).max()),
+    )
+
+
+def _moved(both: Pair, what: Determined) -> list[Moved]:
+    units = dict(zip(both.before.arm.parameter_names, both.before.arm.parameter_units, strict=True))
+    rows = zip(both.names, what.delta.tolist(), what.u.tolist(), strict=True)
+    least = dict(zip(both.names, (_EXACT * both.scale).tolist(), strict=True))
+    known = [Moved(name, units[name], delta, u) for name, delta, u in rows if u > least[name]]
+    return sorted(known, key=lambda each: -abs(each.delta) / each.u)
