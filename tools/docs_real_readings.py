@@ -281,8 +281,9 @@ def _inside(coverage: Mapping[str, Any]) -> str:
     return " | ".join(cells)
 
 
-def real_readings_tables() -> dict[str, str] | None:
-    """Name → Markdown table, or the study's tables that made it; None where the data are not at hand."""
+def real_readings_tables(long: bool = True) -> dict[str, str] | None:
+    """Name → Markdown table, or the study's tables that made it; None where the data are not at hand. long: also those
+    that take minutes each."""
     if not DATA.is_dir():
         return None
     with tempfile.TemporaryDirectory() as name:
@@ -292,11 +293,12 @@ def real_readings_tables() -> dict[str, str] | None:
             "sockets": sockets(folder),
             "held": _left_out(folder, HELD, "held", [SCATTER]),
             "masses": masses(folder),
-            "beyond": _left_out(folder, BEYOND, "beyond", [SCATTER, LENGTH]),
             "verdicts": verdicts(folder),
-            "tracked": tracked(folder),
-            "intervals": intervals(folder),
             "intervals-said": intervals_said(folder),
             "recipe-tracked": ["```toml", *list(TRACKED.values())[-1].splitlines(), "```"],
         }
+        if long:
+            tables["beyond"] = _left_out(folder, BEYOND, "beyond", [SCATTER, LENGTH])
+            tables["tracked"] = tracked(folder)
+            tables["intervals"] = intervals(folder)
     return {name: "\n".join(lines) + "\n" for name, lines in tables.items()}
