@@ -246,7 +246,9 @@ def test_as_many_readings_as_parameters(tmp_path):
 
 
 def test_nothing_fitted(tmp_path):
-    content = gather(calibrated(write_lengths(tmp_path, fit='hold = ["*"]')))
+    study = write_lengths(tmp_path, fit='hold = ["*"]')
+    platinum().save(tmp_path / "start.toml", force=True)  # the arm that the readings are of
+    content = gather(calibrated(study))
     assert {"correlation", "observability"} <= set(content.missing)
     words = " ".join("".join(Page(render(content)).words).split())
     assert "Nothing was fitted: every parameter is held." in words

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import special
+from scipy import special, stats
 
-from ulna.ground.quantiles import chi_squared, fisher, normal, normals, student
+from ulna.ground.quantiles import chi_squared, chi_squared_beyond, fisher, fisher_beyond, normal, normals, student
 
 FREEDOM = np.array([0.05, 0.3, 0.5, 1, 1.5, 2, 3, 4.7, 10, 33.3, 100, 400, 999, 1000, 1001, 5000, 1e5, 1e9, 1e14])
 PROBABILITIES = [0.001, 0.025, 0.5, 0.6, 0.9, 0.975, 0.99865, 0.9999]
@@ -61,3 +61,16 @@ def test_shapes_and_no_degrees_of_freedom():
     assert math.isnan(float(student(0.0, 0.975)))
     assert math.isnan(fisher(3, 0.0, 0.95))
     assert student(np.array([0.0, 5.0]), 0.975)[1] == student(5.0, 0.975)
+
+
+@pytest.mark.parametrize("freedom", [1, 2, 3, 7, 25, 26, 120])
+@pytest.mark.parametrize("value", [0.0, 0.3, 5.0, 24.7, 80.0, 2038.9])
+def test_how_often_chi_squared_is_beyond_is_that_of_scipy(freedom, value):
+    assert chi_squared_beyond(freedom, value) == pytest.approx(stats.chi2.sf(value, freedom), rel=1e-10, abs=1e-300)
+
+
+@pytest.mark.parametrize(("numerator", "denominator"), [(1, 3), (25, 76.3), (25, 4.2), (7, 1e5)])
+@pytest.mark.parametrize("value", [0.0, 0.2, 1.0, 3.5, 80.0])
+def test_how_often_fisher_is_beyond_is_that_of_scipy(numerator, denominator, value):
+    found = fisher_beyond(numerator, denominator, value)
+    assert found == pytest.approx(stats.f.sf(value, numerator, denominator), rel=1e-8, abs=1e-300)

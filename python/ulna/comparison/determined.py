@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from ulna.comparison.pair import Pair
 from ulna.ground.arrays import F64
+from ulna.ground.quantiles import chi_squared_beyond, fisher_beyond
 
 #: of the largest singular value: what lengths see less of is a move of the base, or nothing
 _SEEN = 1e-9
@@ -78,5 +78,5 @@ def _p_value(chi2: float, rank: int, freedom: float) -> float:
     if rank == 0:
         return 1.0
     if math.isinf(freedom):
-        return float(stats.chi2.sf(chi2, rank))
-    return float(stats.f.sf(chi2 / rank, rank, freedom))
+        return chi_squared_beyond(rank, chi2)
+    return fisher_beyond(rank, freedom, chi2 / rank)

@@ -102,6 +102,25 @@ def chi_squared(freedom: float, p: float) -> float:
     return float(_solved(below, np.array([freedom]))[0])
 
 
+def chi_squared_beyond(freedom: int, value: float) -> float:
+    """How often chi-squared with a whole number of degrees of freedom, > 0, is above a value >= 0 (Abramowitz and
+    Stegun 26.4.4 and 26.4.5)."""
+    h = 0.5 * value
+    if h <= 0.0:
+        return 1.0
+    first = 0.0 if freedom % 2 == 0 else 0.5
+    powers = [first + k for k in range((freedom - freedom % 2) // 2)]
+    total = math.fsum(math.exp(power * math.log(h) - h - math.lgamma(power + 1.0)) for power in powers)
+    return min(1.0, total + (math.erfc(math.sqrt(h)) if freedom % 2 else 0.0))
+
+
+def fisher_beyond(numerator: float, denominator: float, value: float) -> float:
+    """How often F with these degrees of freedom, > 0, is above a value >= 0."""
+    over = numerator * value + denominator
+    parts = (0.5 * denominator, 0.5 * numerator, denominator / over, numerator * value / over)
+    return float(_beta(*(np.array([part]) for part in parts))[0])
+
+
 def _solved(error: Callable[[F64], tuple[F64, F64]], start: F64) -> F64:
     """Where an error that grows with x > 0 is zero, (N,): Newton's steps of log x, or halves of a bracket.
 
