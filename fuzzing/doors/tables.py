@@ -34,7 +34,7 @@ class TableDoor:
         command = source.choice(_COMMANDS)
         if "spoilt.toml" in command:
             files["spoilt.toml"] = _study(name, source)
-        return Trial([word.replace("{file}", name) for word in command.split()], files)
+        return Trial.of(command, name, files)
 
     def _written(self, source: Random) -> bytes:
         for _ in range(20):

@@ -31,8 +31,7 @@ class TextDoor:
             content = spoilt_text(content, source)
         else:
             content = spoilt_bytes(content, source)
-        command = source.choice(self.commands)
-        return Trial([word.replace("{file}", name) for word in command.split()], {name: content})
+        return Trial.of(source.choice(self.commands), name, {name: content})
 
     def _words(self, content: bytes, source: Random) -> bytes:
         text = content.decode()

@@ -31,5 +31,4 @@ class TomlDoor:
             content = spoilt_text(content, source)
         else:
             content = spoilt_bytes(content, source)
-        command = source.choice(self.commands)
-        return Trial([word.replace("{file}", name) for word in command.split()], {name: content})
+        return Trial.of(source.choice(self.commands), name, {name: content})

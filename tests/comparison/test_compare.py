@@ -44,7 +44,7 @@ def of_pairs(result: Result, parameters: np.ndarray, shared_u: float = 0.0) -> l
     found = []
     for one, other in parameters.reshape(-1, 2, parameters.shape[1]):
         both = pair(known(result.arm, one, result), known(result.arm, other, result), shared_u=shared_u)
-        found.append(determined(both, lengths(both, 200).by_parameter))
+        found.append(determined(both, lengths(both, 200)))
     return found
 
 
@@ -113,6 +113,21 @@ def test_a_move_of_the_base_is_none(study: Study, truth: Arm) -> None:
     assert not still.moved
     assert not said.moved
     assert said.chi2 == pytest.approx(still.chi2, rel=0.1)
+
+
+def test_a_zero_a_whole_turn_away_is_the_same_arm(study: Study) -> None:
+    result = ulna.calibrate(study)
+    turned = result.arm.parameters.copy()
+    turned[result.arm.parameter_names.index("joint.3.theta0")] += 2.0 * np.pi
+    said = compare(result, known(result.arm, turned, result).arm).steps[0]
+    assert not said.moved
+    assert said.chi2 == pytest.approx(0.0, abs=1e-6)
+
+
+def test_no_more_of_an_artefact_is_shared_than_is_in_the_calibrations(study: Study) -> None:
+    result = ulna.calibrate(study)
+    with pytest.raises(UlnaInputError, match=r"shared u 0\.001: calibration 1 knows its own lengths better"):
+        compare(result, result, shared_u=1e-3)
 
 
 def test_what_cannot_be_compared_is_told(study: Study, truth: Arm) -> None:

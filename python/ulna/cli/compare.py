@@ -26,7 +26,7 @@ def compare(
         typer.Option(
             "--shared-u",
             metavar="RATIO",
-            help="u of the length of the artefact on which all rest, over that length; 0: they rest on others.",
+            help="u of the artefact on which all rest, as their studies state it, over its length; 0: none such.",
         ),
     ] = 0.0,
     everything: All = False,

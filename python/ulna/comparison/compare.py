@@ -3,12 +3,14 @@ which parameters it is. Lengths mm."""
 
 from __future__ import annotations
 
+import os
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from ulna.arm.directions import unit_of
 from ulna.arm.given import ArmLike
 from ulna.comparison.determined import Determined, determined
 from ulna.comparison.extreme import p_of_largest
@@ -118,9 +120,10 @@ def compare(*calibrations: ArmLike, probe: str | None = None, shared_u: float = 
     """Two to six calibrations of one arm, results or their paths, the earliest first; each is compared with the next.
 
     probe: with which lengths are compared; None: the first that both have. shared_u: relative standard uncertainty of
-    the length of the artefact on which both rest (u / length), 0 where they had others.
+    the length of the artefact on which both rest (u / length), as their studies state it; 0 where they had others, or
+    state none.
 
-    Raises UlnaInputError for what is no calibration, has no uncertainty or is another arm.
+    Raises UlnaInputError for what is no calibration, has no uncertainty, is another arm, or cannot share such a u.
     """
     if not 2 <= len(calibrations) <= MOST:
         raise UlnaInputError(
@@ -139,17 +142,19 @@ def compare(*calibrations: ArmLike, probe: str | None = None, shared_u: float = 
 
 
 def _label(given: ArmLike, number: int) -> str:
-    return str(given) if isinstance(given, str) or hasattr(given, "__fspath__") else f"calibration {number}"
+    return str(given) if isinstance(given, str | os.PathLike) else f"calibration {number}"
 
 
 def _compared(both: Pair, found: Lengths) -> Compared:
-    what = determined(both, found.by_parameter)
+    what = determined(both, found)
     freedom = both.degrees_of_freedom
-    change, u, sure = _changes(both, found)
-    rows = np.flatnonzero(sure)
+    by_kept = found.by_parameter @ what.kept
+    u = what.u_of(by_kept)
+    rows = np.flatnonzero(_known(both, found) & (u > _EXACT * found.before_mm))
     beyond = 1.0
     if len(rows):
-        beyond = p_of_largest(both, found.by_parameter[rows], u[rows], float((np.abs(change[rows]) / u[rows]).max()))
+        largest = float((np.abs(found.change_mm[rows]) / u[rows]).max())
+        beyond = p_of_largest(by_kept[rows] / u[rows, None], what.covariance, largest, freedom)
     return Compared(
         both.before.label,
         both.after.label,
@@ -161,22 +166,18 @@ def _compared(both: Pair, found: Lengths) -> Compared:
         what.p_value,
         beyond,
         what.lost,
-        _bands(both, found, change, u, rows),
+        _bands(both, found, u, rows),
         _moved(both, what),
     )
 
 
-def _changes(both: Pair, found: Lengths) -> tuple[F64, F64, Bool]:
-    """(K,) later less earlier, its standard uncertainty, and whether neither left that length open."""
-    change = found.after_mm - found.before_mm
-    by = found.by_parameter
-    u = np.sqrt(np.maximum(np.einsum("kp,pq,kq->k", by, both.covariance, by, optimize=True), 0.0))
-    open_mm = np.abs(by @ (both.lost * both.scale).T).max(axis=1, initial=0.0)
-    moves_mm = max(both.before.noise.moves_mm, both.after.noise.moves_mm)
-    return change, u, (open_mm <= moves_mm) & (u > _EXACT * found.before_mm)
+def _known(both: Pair, found: Lengths) -> Bool:
+    """(K,) lengths that neither calibration left open."""
+    open_mm = np.abs(found.by_parameter @ (both.lost * both.scale).T).max(axis=1, initial=0.0)
+    return np.asarray(open_mm <= max(both.before.noise.moves_mm, both.after.noise.moves_mm))
 
 
-def _bands(both: Pair, found: Lengths, change: F64, u: F64, sure: I64) -> list[Band]:
+def _bands(both: Pair, found: Lengths, u: F64, sure: I64) -> list[Band]:
     freedom = both.degrees_of_freedom
     k = normal(0.975) if np.isinf(freedom) else float(np.ravel(student(freedom, 0.975))[0])
     edges = np.linspace(0.0, float(found.before_mm.max()), BANDS + 1)
@@ -184,11 +185,12 @@ def _bands(both: Pair, found: Lengths, change: F64, u: F64, sure: I64) -> list[B
     for low, high in pairwise(edges.tolist()):
         rows = sure[(found.before_mm[sure] > low) & (found.before_mm[sure] <= high)]
         if len(rows):
-            bands.append(_band(low, high, rows, change, k * u, u, found))
+            bands.append(_band(low, high, rows, k * u, u, found))
     return bands
 
 
-def _band(low: float, high: float, rows: I64, change: F64, expanded: F64, u: F64, found: Lengths) -> Band:
+def _band(low: float, high: float, rows: I64, expanded: F64, u: F64, found: Lengths) -> Band:
+    change = found.change_mm
     at = rows[int(np.abs(change[rows]).argmax())]
     return Band(
         low,
@@ -205,8 +207,6 @@ def _band(low: float, high: float, rows: I64, change: F64, expanded: F64, u: F64
 
 
 def _moved(both: Pair, what: Determined) -> list[Moved]:
-    units = dict(zip(both.before.arm.parameter_names, both.before.arm.parameter_units, strict=True))
-    rows = zip(both.names, what.delta.tolist(), what.u.tolist(), strict=True)
-    least = dict(zip(both.names, (_EXACT * both.scale).tolist(), strict=True))
-    known = [Moved(name, units[name], delta, u) for name, delta, u in rows if u > least[name]]
+    rows = zip(both.names, what.delta.tolist(), what.u.tolist(), (_EXACT * both.scale).tolist(), strict=True)
+    known = [Moved(name, unit_of(name), delta, u) for name, delta, u, least in rows if u > least]
     return sorted(known, key=lambda each: -abs(each.delta) / each.u)

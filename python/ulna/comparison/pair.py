@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.directions import drawn
+from ulna.arm.directions import drawn, unit_of
 from ulna.arm.given import ArmLike, arm_and_noise
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64
@@ -36,28 +36,23 @@ class Pair:
     probe: str
     """With which lengths are compared; both have it."""
     shared_u: float = 0.0
-    """Relative standard uncertainty of the artefact's length that both calibrations rest on; 0: they share none."""
+    """Relative standard uncertainty of the length of the artefact that both calibrations rest on, as both studies state
+    it; 0: they share none, or state none."""
 
     @cached_property
     def scale(self) -> F64:
         """(P,) what a drawing leaves open of each parameter: what is not of one unit is compared in these."""
         return np.array([drawn(name) for name in self.names])
 
-    @cached_property
-    def difference(self) -> F64:
-        """(P,) after less before, rad and mm."""
-        return self.of(self.after.arm, self.after.arm.parameters) - self.of(self.before.arm, self.before.arm.parameters)
+    @property
+    def covariances(self) -> tuple[F64, F64]:
+        """(P, P) of each, the earlier first."""
+        return self._covariance(self.before.arm), self._covariance(self.after.arm)
 
-    @cached_property
-    def covariance(self) -> F64:
-        """(P, P) of the difference. An artefact of both is wrong for both: what its length does to all of the arm's
-        lengths alike cancels in the difference."""
-        one, other = (self._covariance(each.arm) for each in (self.before, self.after))
-        grown = [
-            np.where(self._lengths, self.of(each.arm, each.arm.parameters), 0.0) for each in (self.before, self.after)
-        ]
-        common = self.shared_u**2 * np.outer(*grown)
-        return one + other - common - common.T
+    @property
+    def lengths_mm(self) -> tuple[F64, F64]:
+        """(P,) of each its lengths, 0 for angles: how the parameters grow with the unit of length."""
+        return self._grown(self.before.arm), self._grown(self.after.arm)
 
     @property
     def degrees_of_freedom(self) -> float:
@@ -83,10 +78,9 @@ class Pair:
         """(..., all parameters of an arm) → (..., P)."""
         return np.take(values, [arm.parameter_names.index(name) for name in self.names], axis=-1)
 
-    @property
-    def _lengths(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        units = dict(zip(self.before.arm.parameter_names, self.before.arm.parameter_units, strict=True))
-        return np.array([units[name] == "mm" for name in self.names])
+    def _grown(self, arm: Arm) -> F64:
+        units = np.array([unit_of(name) for name in self.names])
+        return np.where(units == "mm", self.of(arm, arm.parameters), 0.0)
 
     def _covariance(self, arm: Arm) -> F64:
         assert arm.uncertainty is not None

@@ -24,6 +24,11 @@ class Lengths:
     by_parameter: F64
     """(K, P) derivatives, at the earlier one."""
 
+    @property
+    def change_mm(self) -> F64:
+        """(K,) later less earlier."""
+        return self.after_mm - self.before_mm
+
 
 def lengths(pair: Pair, count: int, seed: int = 0) -> Lengths:
     """`count` lengths, the poses of both ends uniform over `travel`."""

@@ -11,6 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 REFERENCE_C = 20.0
+_IN_COMMON = "temperature"
+"""Of the contributors to lengths: the same for all artefacts of a test."""
+_OF_LENGTHS = ("calibration", _IN_COMMON, "expansion")
 
 
 @dataclass(frozen=True)
@@ -74,10 +77,6 @@ def of_several(shares: Sequence[Share]) -> Budget:
         found.append(Contributor(name, u_mm, f"u({name}) of {terms}, {how}"))
     left_out = [said for share in shares for said in share.budget.left_out]
     return Budget(found, list(dict.fromkeys(left_out)))
-
-
-_IN_COMMON = "temperature"
-_OF_LENGTHS = ("calibration", _IN_COMMON, "expansion")
 
 
 @dataclass(frozen=True)
