@@ -15,7 +15,7 @@ from ulna.cli.running import guard
 def compare(
     results: Annotated[
         list[Path],
-        typer.Argument(metavar="RESULT…", help="Two to six results, the earliest first.", show_default=False),
+        typer.Argument(metavar="RESULT", help="Two to six results, the earliest first.", show_default=False),
     ],
     probe: Annotated[
         str | None,
