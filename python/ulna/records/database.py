@@ -1,0 +1,123 @@
+"""The database of a bench: SQLite in its folder, or PostgreSQL by URL. Many read, one writes at a time."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, text
+from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError
+from sqlalchemy.pool import NullPool
+
+from ulna.ground.errors import UlnaInputError
+
+WAIT_S = 60.0
+"""For the one that writes."""
+_LOCK = 0x756C6E61
+"""PostgreSQL's number of the lock that whoever writes holds: "ulna"."""
+_BEGIN_READING = {"sqlite": "BEGIN", "postgresql": "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"}
+_BEGIN_WRITING = {
+    "sqlite": ("BEGIN IMMEDIATE",),
+    "postgresql": ("BEGIN", f"SET LOCAL lock_timeout = '{WAIT_S:.0f}s'", f"SELECT pg_advisory_xact_lock({_LOCK})"),
+}
+_BUSY = ("database is locked", "database is busy", "lock timeout")
+
+
+def engine_of(url: str) -> Engine:
+    """A door to it; nothing is opened yet. Raises UlnaInputError for a URL of another kind of database."""
+    made = _checked(url)
+    # transactions are begun by hand: Python's own way begins them too late
+    if made.get_backend_name() == "sqlite":
+        engine = create_engine(made, poolclass=NullPool, connect_args={"isolation_level": None, "timeout": WAIT_S})
+        event.listen(engine, "connect", _set_up)
+        return engine
+    made = made.set(drivername="postgresql+pg8000")
+    return create_engine(made, poolclass=NullPool, isolation_level="AUTOCOMMIT", connect_args={"timeout": 10})
+
+
+def _checked(url: str) -> URL:
+    try:
+        made = make_url(url)
+        backend = made.get_backend_name()
+    except (ArgumentError, ValueError):
+        raise UlnaInputError(f"database {_shown(url)}: no URL; expected postgresql://user@host/name. Correct it.") from None
+    if backend not in ("sqlite", "postgresql"):
+        raise UlnaInputError(
+            f"database {_shown(url)}: a database of kind '{backend}'; expected postgresql://user@host/name, or none: "
+            "then it is SQLite in the folder."
+        )
+    return made
+
+
+def _shown(url: str) -> str:
+    """Without what comes before the host, which may be a password."""
+    return url.rsplit("@", 1)[-1][:80]
+
+
+def _set_up(connection: sqlite3.Connection, _: Any) -> None:
+    """On the disk before it is said to be done; readers beside the one that writes."""
+    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
+        connection.execute(f"PRAGMA {pragma}")
+
+
+class Database:
+    """Where the chain and the index are."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+        self.engine = engine_of(url)
+
+    @property
+    def sqlite(self) -> bool:
+        """Whether it is a file of the bench."""
+        return self.engine.dialect.name == "sqlite"
+
+    @contextmanager
+    def reading(self) -> Iterator[Connection]:
+        """What all saw at one moment. Raises UlnaInputError where it cannot be asked."""
+        with self._said(), self.engine.connect() as connection:
+            connection.execute(text(_BEGIN_READING[self.engine.dialect.name]))
+            try:
+                yield connection
+            finally:
+                connection.execute(text("ROLLBACK"))
+
+    @contextmanager
+    def writing(self) -> Iterator[Connection]:
+        """The one that writes: all of it or nothing. Raises UlnaInputError where it cannot be written."""
+        with self._said(), self.engine.connect() as connection:
+            for statement in _BEGIN_WRITING[self.engine.dialect.name]:
+                connection.execute(text(statement))
+            try:
+                yield connection
+            except BaseException:
+                connection.execute(text("ROLLBACK"))
+                raise
+            connection.execute(text("COMMIT"))
+
+    @contextmanager
+    def _said(self) -> Iterator[None]:
+        """What the database says, in words."""
+        try:
+            yield
+        except OperationalError as error:
+            raise self._unusable(error) from None
+        except DBAPIError as error:
+            if not self.sqlite or isinstance(error.orig, sqlite3.DatabaseError):
+                raise self._unusable(error) from None
+            raise
+
+    def _unusable(self, error: DBAPIError) -> UlnaInputError:
+        said = " ".join(_words(error).split())[:200]
+        if any(each in said for each in _BUSY):
+            return UlnaInputError(
+                f"database {_shown(self.url)}: another program has been writing to it for {WAIT_S:.0f} s. Try again."
+            )
+        return UlnaInputError(f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole.")
+
+
+def _words(error: DBAPIError) -> str:
+    told = error.orig.args[0] if error.orig is not None and error.orig.args else str(error)
+    return str(told.get("M", told)) if isinstance(told, dict) else str(told)

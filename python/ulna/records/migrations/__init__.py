@@ -1,0 +1,1 @@
+"""Alembic's own folder: `env.py`, which it runs, and the versions of the schema."""
