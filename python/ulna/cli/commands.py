@@ -38,6 +38,7 @@ COMMANDS = {
 GROUPS = {
     "import": "ulna.cli.importing",
     "export": "ulna.cli.exporting",
+    "record": "ulna.cli.recording.app",
 }
 
 

@@ -1,0 +1,1 @@
+"""`ulna record`: its commands, by what they are about."""

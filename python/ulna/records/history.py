@@ -1,0 +1,167 @@
+"""What became of one thing: everything that was done to it, and its figures over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from sqlalchemy import Connection, select
+
+from ulna.ground.errors import UlnaInputError, nearest
+from ulna.records import asked
+from ulna.records.acts.registry import ACTS
+from ulna.records.acts.standing import WITHDRAWN
+from ulna.records.chain import walk
+from ulna.records.entry import Entry
+from ulna.records.tables import CALIBRATION, FIGURE, STANDING
+
+
+@dataclass(frozen=True)
+class Happening:
+    """One line of a history."""
+
+    at: str
+    """When it was, as it was stated; ISO 8601, UTC."""
+    what: str
+    text: str
+    by: str
+    seq: int
+    """Of the entry."""
+    sha256: str | None = None
+    """Of the file, where there is one."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A figure at one time. Lengths mm."""
+
+    at: str
+    value: float
+    unit: str
+    u: float | None
+    k: float | None
+    limit: float | None
+    verdict: str | None
+    source: str
+    state: str
+    artefact: str | None
+    sha256: str
+
+
+def history(connection: Connection, name: str) -> list[Happening]:
+    """Everything of one thing, the earliest first. Raises UlnaInputError where it is not registered."""
+    row = asked.equipment(connection, name)
+    found = [_happening(entry) for entry in walk(connection, subject=row["name"])]
+    found += [
+        _happening(entry)
+        for act in ("issued", "standing")
+        for entry in walk(connection, act=act)
+        if entry.stated.get("arm") == row["name"] and entry.subject != row["name"]
+    ]
+    return sorted(found, key=lambda each: (each.at, each.seq))
+
+
+def _happening(entry: Entry) -> Happening:
+    at = str(entry.stated.get("at") or entry.at)
+    sha256 = entry.files.get("file") or entry.files.get("certificate")
+    what = str(entry.stated.get("kind") or ACTS[entry.act].said) if entry.act in _BY_KIND else ACTS[entry.act].said
+    return Happening(at, what, _TEXTS[entry.act](entry), entry.actor, entry.seq, sha256)
+
+
+_BY_KIND = ("filed", "event")
+"""Acts whose own word says less than what kind it was."""
+
+
+def _filed(entry: Entry) -> str:
+    rests = ", ".join(entry.stated.get("artefacts", ()))
+    return str(entry.stated["names"]["file"]) + (f", on {rests}" if rests else "")
+
+
+def _equipment(entry: Entry) -> str:
+    said = {key: value for key, value in entry.stated.items() if key not in ("kind", "state", "names")}
+    details = ", ".join(f"{key} {value}" for key, value in said.items())
+    return f"{entry.stated['kind']}, {entry.stated['state']}" + (f": {details}" if details else "")
+
+
+def _certified(entry: Entry) -> str:
+    stated = entry.stated
+    values = ", ".join(f"{v['quantity']} {v['value']:.10g} {v['unit']}, u {v['u']:.2g}" for v in stated["values"])
+    number = f", certificate {stated['number']}" if "number" in stated else ""
+    return values + number + (f", valid to {stated['valid_to']}" if "valid_to" in stated else "")
+
+
+def _issued(entry: Entry) -> str:
+    supersedes = f", supersedes {entry.stated['supersedes']}" if entry.stated.get("supersedes") else ""
+    return f"certificate {entry.subject}{supersedes}"
+
+
+def _standing(entry: Entry) -> str:
+    what = f"{entry.subject[:12]}…" if len(entry.subject) == 64 else f"certificate {entry.subject}"
+    return f"{what} {entry.stated['state']}: {entry.stated['reason']}"
+
+
+_TEXTS: dict[str, Callable[[Entry], str]] = {
+    "filed": _filed,
+    "equipment": _equipment,
+    "certified": _certified,
+    "event": lambda entry: str(entry.stated["text"]),
+    "person": lambda entry: ", ".join(entry.stated["roles"]),
+    "setting": lambda entry: str(entry.stated["value"]),
+    "issued": _issued,
+    "standing": _standing,
+    "interval": lambda entry: f"{entry.stated['days']:.0f} days ({entry.stated['method']})",
+}
+
+
+def withdrawn() -> Any:
+    """SQL: the SHA-256 of files that no longer stand."""
+    return select(STANDING.c.subject).where(STANDING.c.state == WITHDRAWN)
+
+
+def figure_names(connection: Connection, arm: str) -> list[tuple[str, str]]:
+    """(name, state) of all figures of an arm."""
+    asked_for = select(FIGURE.c.name, FIGURE.c.state).where(FIGURE.c.arm == arm).distinct()
+    return sorted((name, state) for name, state in connection.execute(asked_for))
+
+
+def figures(
+    connection: Connection, arm: str, name: str, state: str | None = None, artefact: str | None = None
+) -> list[Point]:
+    """A figure of an arm over time, the earliest first, without files that were withdrawn. Raises UlnaInputError where
+    there is none."""
+    asked_for = (
+        select(FIGURE)
+        .where(FIGURE.c.arm == arm, FIGURE.c.name == name, FIGURE.c.sha256.not_in(withdrawn()))
+        .order_by(FIGURE.c.at, FIGURE.c.seq, FIGURE.c.line)
+    )
+    if state is not None:
+        asked_for = asked_for.where(FIGURE.c.state == state)
+    if artefact is not None:
+        asked_for = asked_for.where(FIGURE.c.artefact == artefact)
+    found = [_point(row) for row in asked.rows(connection, asked_for)]
+    if not found:
+        known = sorted({f"{one} ({other})" for one, other in figure_names(connection, arm)})
+        of = f" of state '{state}'" if state else ""
+        raise UlnaInputError(f"record: no figure '{name}'{of} of '{arm}'.{nearest(name, known)}")
+    return found
+
+
+def _point(row: asked.Row) -> Point:
+    names = ("at", "value", "unit", "u", "k", "verdict", "source", "state", "artefact", "sha256")
+    return Point(**{name: row[name] for name in names}, limit=row["limit_value"])
+
+
+def calibrations(connection: Connection, arm: str) -> list[asked.Row]:
+    """Of an arm, the earliest first, without those that were withdrawn."""
+    asked_for = (
+        select(CALIBRATION)
+        .where(CALIBRATION.c.arm == arm, CALIBRATION.c.sha256.not_in(withdrawn()))
+        .order_by(CALIBRATION.c.at, CALIBRATION.c.seq)
+    )
+    return asked.rows(connection, asked_for)
+
+
+def as_dicts(points: list[Any]) -> list[dict[str, Any]]:
+    """The machine form."""
+    return [asdict(each) for each in points]
