@@ -32,8 +32,9 @@ FLOORS = {
     "reproduce": 7,
     "uncertainties": 8,
     "documents": 9,
-    "cli": 10,
-    "__main__": 11,
+    "records": 10,
+    "cli": 11,
+    "__main__": 12,
 }
 
 #: rooms of the Rust core, from the ground up: each uses only what stands on floors below its own

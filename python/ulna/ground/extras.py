@@ -16,6 +16,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "search": ("scipy",),
     "judge": ("sklearn",),
     "dask": ("distributed",),
+    "records": ("sqlalchemy", "alembic", "pg8000"),
 }
 """Extra, as in pyproject.toml → what is imported of it."""
 

@@ -1,4 +1,5 @@
-"""What the index is asked: the newest rows of equipment, its values, its standing. One query each, by bound parameters."""
+"""What the index is asked: the newest rows of equipment, its values, its standing. One query each, by bound
+parameters."""
 
 from __future__ import annotations
 
@@ -40,9 +41,13 @@ def equipment(connection: Connection, name: str, kinds: Sequence[str] = ()) -> R
     if row is None:
         known = [each["name"] for each in rows(connection, newest(EQUIPMENT, "name"))]
         hint = nearest(name, known)
-        raise UlnaInputError(f"record: '{name}' is not registered.{hint} Register it: ulna record arm, or artefact, NAME.")
+        raise UlnaInputError(
+            f"record: '{name}' is not registered.{hint} Register it: ulna record arm, or artefact, NAME."
+        )
     if kinds and row["kind"] not in kinds:
-        raise UlnaInputError(f"record: '{name}' is registered as {row['kind']}; expected {' or '.join(kinds)}. Name another.")
+        raise UlnaInputError(
+            f"record: '{name}' is registered as {row['kind']}; expected {' or '.join(kinds)}. Name another."
+        )
     return row
 
 

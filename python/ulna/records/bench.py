@@ -16,8 +16,8 @@ from ulna.ground.errors import UlnaInputError
 from ulna.records import chain
 from ulna.records.database import Database
 from ulna.records.entry import Entry
-from ulna.records.schema import check_schema, upgrade
 from ulna.records.place import FILES, LINKS, WHO, bench_file, found, make_folder, settings, url_of
+from ulna.records.schema import check_schema, upgrade
 from ulna.records.store import Store
 
 _LONGEST = 200

@@ -1,13 +1,15 @@
 """The chain of entries: in the database, where triggers keep it, and each entry as a file of its own.
 
-An entry is in the database first, so that no file of an entry is left by a write that was cut off: a file whose entry is
-not in the database has been taken out of it. The newest entry's file may lack after a cut; whoever comes next writes it.
+An entry is in the database first, so that no file of an entry is left by a write that was cut off: a file whose entry
+is not in the database has been taken out of it. The newest entry's file may lack after a cut; whoever comes next writes
+it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from itertools import takewhile
 from typing import Any
 
 from sqlalchemy import Connection, func, insert, select
@@ -81,11 +83,10 @@ def row_of(entry: Entry) -> dict[str, Any]:
 
 
 def settle(connection: Connection, links: Store) -> None:
-    """The files of the newest entries, where they are not there yet."""
-    newest = select(ENTRY.c.text, ENTRY.c.sha256).order_by(ENTRY.c.seq.desc())
-    for text, sha256 in connection.execute(newest.limit(_CUT)):
-        if links.place(sha256).exists():
-            return
+    """The files of the newest entries, where they are not there yet: the oldest first, so that a cut leaves no gap."""
+    newest = select(ENTRY.c.text, ENTRY.c.sha256).order_by(ENTRY.c.seq.desc()).limit(_CUT)
+    absent = takewhile(lambda row: not links.place(row[1]).exists(), connection.execute(newest))
+    for text, _ in reversed(list(absent)):
         links.put(text.encode())
 
 

@@ -71,8 +71,8 @@ def backup(bench: Bench, folder: Path) -> Copied:
 
 
 def imported(path: Path, folder: Path, database: str | None = None, by: str | None = None) -> Copied:
-    """A new record from a zip: the same chain. Raises UlnaInputError for a zip that is none, or is damaged: then nothing
-    is made."""
+    """A new record from a zip: the same chain. Raises UlnaInputError for a zip that is none, or is damaged: then
+    nothing is made."""
     with _opened(path) as archive:
         said = _checked(archive, path)
         bench = Bench.make(folder, database, by)
@@ -94,7 +94,9 @@ def _opened(path: Path) -> Iterator[zipfile.ZipFile]:
     except FileNotFoundError:
         raise UlnaInputError(f"{path}: file not found. Correct the path.") from None
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, RuntimeError) as error:
-        raise UlnaInputError(f"{path}: no zip of a record, or damaged ({error}). Make it with ulna record export.") from None
+        raise UlnaInputError(
+            f"{path}: no zip of a record, or damaged ({error}). Make it with ulna record export."
+        ) from None
 
 
 def _checked(archive: zipfile.ZipFile, path: Path) -> Copied:
@@ -104,8 +106,8 @@ def _checked(archive: zipfile.ZipFile, path: Path) -> Copied:
     for name in names:
         if name != MANIFEST and not _MEMBER.fullmatch(name):
             raise UlnaInputError(
-                f"{path}: the name {name[:80]!r} in it is none of a record; expected {FILES}/ab/…, {LINKS}/ab/…. It was "
-                "not made by ulna record export."
+                f"{path}: the name {name[:80]!r} in it is none of a record; expected {FILES}/ab/…, {LINKS}/ab/…. It "
+                "was not made by ulna record export."
             )
     head, entries, files = _manifest(archive, names, path), list[tuple[str, Entry]](), 0
     for name in names:

@@ -29,12 +29,14 @@ def engine_of(url: str) -> Engine:
     """A door to it; nothing is opened yet. Raises UlnaInputError for a URL of another kind of database."""
     made = _checked(url)
     # transactions are begun by hand: Python's own way begins them too late
+    # and no connection is kept, so that a bench can be moved and a server started anew
     if made.get_backend_name() == "sqlite":
         engine = create_engine(made, poolclass=NullPool, connect_args={"isolation_level": None, "timeout": WAIT_S})
         event.listen(engine, "connect", _set_up)
         return engine
     made = made.set(drivername="postgresql+pg8000")
-    return create_engine(made, poolclass=NullPool, isolation_level="AUTOCOMMIT", connect_args={"timeout": 10})
+    options = {"poolclass": NullPool, "isolation_level": "AUTOCOMMIT", "connect_args": {"timeout": WAIT_S + 10}}
+    return create_engine(made, **options)
 
 
 def _checked(url: str) -> URL:
@@ -42,7 +44,9 @@ def _checked(url: str) -> URL:
         made = make_url(url)
         backend = made.get_backend_name()
     except (ArgumentError, ValueError):
-        raise UlnaInputError(f"database {_shown(url)}: no URL; expected postgresql://user@host/name. Correct it.") from None
+        raise UlnaInputError(
+            f"database {_shown(url)}: no URL; expected postgresql://user@host/name. Correct it."
+        ) from None
     if backend not in ("sqlite", "postgresql"):
         raise UlnaInputError(
             f"database {_shown(url)}: a database of kind '{backend}'; expected postgresql://user@host/name, or none: "

@@ -85,7 +85,7 @@ def _ready(bench: Bench, filing: Filing) -> _Ready:
     beside = {role: keep(bench, each) for role, each in {**read.beside, **filing.with_it}.items()}
     names = {MAIN: as_text(path.name)} | {role: as_text(each.name) for role, each in filing.with_it.items()}
     at = in_utc(filing.at, "option --at") if filing.at else in_utc(read.at, str(path)) if read.at else now()
-    stated = {"kind": kind.name, "at": at, "names": names, "artefacts": list(filing.artefacts)}
+    stated: dict[str, object] = {"kind": kind.name, "at": at, "names": names, "artefacts": list(filing.artefacts)}
     if said is not None:
         stated["formats"] = {MAIN: said}
     files = {MAIN: sha256} | {role: each for role, each in beside.items() if each is not None}
@@ -114,7 +114,9 @@ def _arm(connection: Connection, name: str, filing: Filing) -> str:
     except UlnaInputError as error:
         if filing.arm is not None:
             raise
-        raise UlnaInputError(f"{filing.path}: is of the arm '{name}'. {error} Or say of which it is with --arm.") from None
+        raise UlnaInputError(
+            f"{filing.path}: is of the arm '{name}'. {error} Or say of which it is with --arm."
+        ) from None
 
 
 def there_already(connection: Connection, arm: str, sha256: str) -> int | None:

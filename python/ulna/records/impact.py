@@ -41,7 +41,9 @@ def impact(connection: Connection, name: str, since: str | None = None, until: s
     good, bad, why = since, until, "as stated"
     if row["kind"] == "artefact":
         if until is None:
-            raise UlnaInputError(f"record: when '{name}' was found wrong is not said; expected a day. Give --until DAY.")
+            raise UlnaInputError(
+                f"record: when '{name}' was found wrong is not said; expected a day. Give --until DAY."
+            )
     elif until is None:
         good, bad, why = _found(connection, row["name"], since)
     assert bad is not None
@@ -73,8 +75,8 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
             good, first, why, was_good = last_good, at, _why(worst), False
     if first is None:
         raise UlnaInputError(
-            f"record: no figure of '{arm}' failed; expected a check or a test that did. Name the times with --since DAY "
-            "--until DAY."
+            f"record: no figure of '{arm}' failed; expected a check or a test that did. Name the times with --since "
+            "DAY --until DAY."
         )
     return good, first, why
 

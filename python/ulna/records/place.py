@@ -15,7 +15,7 @@ from ulna.ground.errors import UlnaInputError
 
 BENCH, DATABASE, FILES, LINKS = "bench.toml", "record.sqlite", "objects", "chain"
 """In a bench folder: what it is, the database where it is SQLite, originals, the entries' files."""
-FORMAT = "ulna-bench/1"
+FORMAT: Literal["ulna-bench/1"] = "ulna-bench/1"
 WHERE, WHO = "ULNA_RECORDS", "ULNA_BY"
 """In the environment: the folder, and who works."""
 _NETWORK = ("nfs", "nfs4", "cifs", "smb3", "smbfs", "9p", "afs", "fuse.sshfs", "davfs")
@@ -68,7 +68,7 @@ def found(given: str | os.PathLike[str] | None) -> Path:
     said = os.fspath(given) if given is not None else os.environ.get(WHERE) or settings().folder
     if not said:
         raise UlnaInputError(
-            f"no record is named; expected its folder. Give --records DIR, set {WHERE}, or write folder = \"DIR\" below "
+            f'no record is named; expected its folder. Give --records DIR, set {WHERE}, or write folder = "DIR" below '
             f"[record] in {settings_path()}. A new one: ulna record init DIR."
         )
     return Path(said)
@@ -78,7 +78,9 @@ def bench_file(folder: Path) -> BenchFile:
     """Raises UlnaInputError for a folder that is no record."""
     path = folder / BENCH
     if not path.is_file():
-        raise UlnaInputError(f"{folder}: no record ({BENCH} is not there). Name another, or: ulna record init {folder}.")
+        raise UlnaInputError(
+            f"{folder}: no record ({BENCH} is not there). Name another, or: ulna record init {folder}."
+        )
     document, _ = read_toml(path, "a record's bench.toml")
     check_format(document, path, "ulna-bench")
     return fill(BenchFile, document, path)

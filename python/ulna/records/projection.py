@@ -12,7 +12,8 @@ from ulna.records.store import Store
 
 
 def rows_of(entry: Entry, files: Store) -> dict[Table, list[dict[str, Any]]]:
-    """By table, each with every column. Raises UlnaInputError for an act that nobody knows, or files that are damaged."""
+    """By table, each with every column. Raises UlnaInputError for an act that nobody knows, or files that are
+    damaged."""
     made: dict[Table, list[dict[str, Any]]] = {}
     for table, row in act_of(entry.act).rows(entry, files):
         rows = made.setdefault(table, [])

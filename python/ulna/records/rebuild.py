@@ -11,8 +11,8 @@ from ulna.ground.errors import UlnaInputError
 from ulna.records import chain, triggers
 from ulna.records.bench import Bench
 from ulna.records.entry import FIRST, Entry
-from ulna.records.schema import upgrade
 from ulna.records.place import DATABASE
+from ulna.records.schema import upgrade
 from ulna.records.store import Store
 from ulna.records.tables import ENTRY, INDEX, METADATA
 
@@ -104,8 +104,8 @@ def in_order(entries: Iterable[Entry], where: str) -> list[Entry]:
     for number, entry in enumerate(ordered, start=1):
         if entry.seq != number or entry.previous != previous:
             raise UlnaInputError(
-                f"{where}: entry {number} is not there, or there are two of it: the files of entries are not one chain. "
-                "See what ulna record verify says, and restore a backup."
+                f"{where}: entry {number} is not there, or there are two of it: the files of entries are not one "
+                "chain. See what ulna record verify says, and restore a backup."
             )
         previous = entry.sha256
     return ordered

@@ -63,9 +63,7 @@ class Records(Shown):
         with self.bench.reading() as connection:
             return history(connection, name)
 
-    def figures(
-        self, arm: str, name: str, state: str | None = None, artefact: str | None = None
-    ) -> list[Point]:
+    def figures(self, arm: str, name: str, state: str | None = None, artefact: str | None = None) -> list[Point]:
         """A figure of an arm over time, the earliest first."""
         with self.bench.reading() as connection:
             return figures(connection, asked.equipment(connection, arm)["name"], name, state, artefact)
@@ -91,9 +89,7 @@ class Records(Shown):
         with self.bench.reading() as connection:
             return impact(connection, name, *times)
 
-    def compare(
-        self, arm: str, last: int = 2, probe: str | None = None, shared_u: float = 0.0
-    ) -> Comparison:
+    def compare(self, arm: str, last: int = 2, probe: str | None = None, shared_u: float = 0.0) -> Comparison:
         """The last calibrations of an arm, each with the next."""
         return compared.compare_last(self.bench, arm, last, probe, shared_u)
 
@@ -137,8 +133,8 @@ class Records(Shown):
         artefacts: Sequence[str] = (),
         with_it: Mapping[str, Path_] | None = None,
     ) -> list[Filed]:
-        """Files, all or none; what each is, is found out. at: when it was measured; artefacts: on which of the record it
-        rests; with_it: what belongs to it, by role."""
+        """Files, all or none; what each is, is found out. at: when it was measured; artefacts: on which of the record
+        it rests; with_it: what belongs to it, by role."""
         beside = {role: Path(path) for role, path in (with_it or {}).items()}
         return filing.file_all(self.bench, [Filing(Path(path), arm, at, artefacts, beside) for path in paths])
 
@@ -172,9 +168,7 @@ class Records(Shown):
         return migrate(self.bench, Path(backup_to))
 
     @classmethod
-    def from_export(
-        cls, path: Path_, folder: Path_, database: str | None = None, by: str | None = None
-    ) -> Records:
+    def from_export(cls, path: Path_, folder: Path_, database: str | None = None, by: str | None = None) -> Records:
         """A new record with the same chain, from a zip."""
         copies.imported(Path(path), Path(folder), database, by)
         return cls.open(folder, by)

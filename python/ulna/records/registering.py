@@ -65,7 +65,9 @@ def register(bench: Bench, name: str, kind: str, state: str | None, details: Map
     with bench.writing() as doing:
         before = asked.last_of(doing.connection, EQUIPMENT, "name", name)
         if before is not None and before["kind"] != kind:
-            raise UlnaInputError(f"record: '{name}' is registered as {before['kind']}, not {kind}. Choose another name.")
+            raise UlnaInputError(
+                f"record: '{name}' is registered as {before['kind']}, not {kind}. Choose another name."
+            )
         if said.get("part_of"):
             asked.equipment(doing.connection, said["part_of"], ("arm", "robot"))
         kept = {key: before[key] for key in of_equipment.DETAILS if before[key] is not None} if before else {}
@@ -92,8 +94,8 @@ def certify(
     for each in values:
         if not (math.isfinite(each.value) and each.value > 0 and math.isfinite(each.u) and each.u >= 0):
             raise UlnaInputError(
-                f"record: {each.quantity} of '{artefact}': got {each.value:g} with u {each.u:g}; expected a size above 0 and "
-                "u not below 0. Correct it."
+                f"record: {each.quantity} of '{artefact}': got {each.value:g} with u {each.u:g}; expected a size "
+                "above 0 and u not below 0. Correct it."
             )
     days = {key: day and in_utc(day, key)[:10] for key, day in (("valid_from", valid_from), ("valid_to", valid_to))}
     if days["valid_from"] and days["valid_to"] and days["valid_from"] > days["valid_to"]:

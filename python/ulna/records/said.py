@@ -18,7 +18,9 @@ def values_said(texts: Sequence[str]) -> dict[str, tuple[float, float]]:
         quantity, equals, size = text.partition("=")
         quantity = quantity.strip()
         if not equals or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9 _.-]*", quantity):
-            raise UlnaInputError(f'option --value: got {text[:60]!r}, expected such as "length=443.172±0.001". Correct it.')
+            raise UlnaInputError(
+                f'option --value: got {text[:60]!r}, expected such as "length=443.172±0.001". Correct it.'
+            )
         if quantity in found:
             raise UlnaInputError(f"option --value: '{quantity}' is given twice; expected once. Leave one out.")
         found[quantity] = _pair(size, "option --value")
@@ -31,7 +33,9 @@ def expansion_said(text: str | None) -> tuple[float | None, float | None]:
         return None, None
     alpha, u = _pair(text, "option --expansion")
     if not abs(alpha) < 1e-3:
-        raise UlnaInputError(f"option --expansion: got {alpha:g} 1/K; expected such as 11.5e-6. Is it in ppm? Correct it.")
+        raise UlnaInputError(
+            f"option --expansion: got {alpha:g} 1/K; expected such as 11.5e-6. Is it in ppm? Correct it."
+        )
     return alpha, u
 
 

@@ -35,8 +35,8 @@ def check_schema(connection: Connection, where: Path) -> None:
         )
     if found < NEWEST:
         raise UlnaInputError(
-            f"{where}: the database has schema {found}, this Ulna {NEWEST}. Run: ulna record migrate (it makes a backup "
-            "first)."
+            f"{where}: the database has schema {found}, this Ulna {NEWEST}. Run: ulna record migrate (it makes a "
+            "backup first)."
         )
     raise UlnaInputError(f"{where}: the database has schema {found}, which this Ulna does not know. Use a newer Ulna.")
 

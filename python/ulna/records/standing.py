@@ -14,8 +14,8 @@ from ulna.records.tables import CERTIFICATE, ENTRY, FILE
 
 
 def withdraw(bench: Bench, subject: str, reason: str) -> Entry:
-    """A certificate by its number, or a filed file by its SHA-256 or the beginning of it. Raises UlnaInputError for what
-    is not there, is withdrawn already, or has no reason."""
+    """A certificate by its number, or a filed file by its SHA-256 or the beginning of it. Raises UlnaInputError for
+    what is not there, is withdrawn already, or has no reason."""
     reason = checked_text(reason, "reason", 2000)
     with bench.writing() as doing:
         found, arm = _found(doing.connection, checked_text(subject, "what is withdrawn"))
@@ -50,7 +50,7 @@ def filed(connection: Connection, sha256: str) -> tuple[str, str]:
     if len(found) != 1:
         what = "no file or certificate" if not found else f"{len(found)} files"
         raise UlnaInputError(
-            f"record: {what} '{sha256[:70]}'; expected the number of a certificate, or eight or more of the letters that "
-            "one file's SHA-256 begins with. See ulna record history."
+            f"record: {what} '{sha256[:70]}'; expected the number of a certificate, or eight or more of the letters "
+            "that one file's SHA-256 begins with. See ulna record history."
         )
     return next(iter(found))

@@ -6,8 +6,9 @@ what changes with time (equipment, standing, interval) the newest row holds. Tim
 
 from __future__ import annotations
 
+from typing import Any
+
 from sqlalchemy import Boolean, Column, Double, Index, Integer, MetaData, String, Table, Text
-from sqlalchemy.types import TypeEngine
 
 METADATA = MetaData()
 
@@ -26,7 +27,7 @@ ENTRY = Table(
 )
 
 
-def _indexed(name: str, *columns: Column[object], by: tuple[str, ...]) -> Table:
+def _indexed(name: str, *columns: Column[Any], by: tuple[str, ...]) -> Table:
     return Table(
         name,
         METADATA,
@@ -37,16 +38,12 @@ def _indexed(name: str, *columns: Column[object], by: tuple[str, ...]) -> Table:
     )
 
 
-def _text(name: str, null: bool = True) -> Column[object]:
-    return _column(name, Text(), null)
+def _text(name: str, null: bool = True) -> Column[Any]:
+    return Column(name, Text(), nullable=null)
 
 
-def _number(name: str, null: bool = True) -> Column[object]:
-    return _column(name, Double(), null)
-
-
-def _column(name: str, kind: TypeEngine[object], null: bool) -> Column[object]:  # type: ignore[type-var]
-    return Column(name, kind, nullable=null)
+def _number(name: str, null: bool = True) -> Column[Any]:
+    return Column(name, Double(), nullable=null)
 
 
 FILE = _indexed("file", _text("sha256", False), _text("name"), _text("format"), _text("role", False), by=("sha256",))
@@ -67,9 +64,7 @@ CERTIFIED = _indexed(
     *(_text(name) for name in ("number", "by", "sha256", "valid_from", "valid_to")),
     by=("artefact quantity seq",),
 )
-EVENT = _indexed(
-    "event", *(_text(name, False) for name in ("equipment", "kind", "at", "text")), by=("equipment at",)
-)
+EVENT = _indexed("event", *(_text(name, False) for name in ("equipment", "kind", "at", "text")), by=("equipment at",))
 PERSON = _indexed("person", _text("name", False), _text("roles", False), by=("name seq",))
 SETTING = _indexed("setting", _text("name", False), _text("value", False), by=("name seq",))
 CALIBRATION = _indexed(

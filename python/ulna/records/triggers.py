@@ -8,9 +8,7 @@ from sqlalchemy import Connection, text
 
 _MESSAGE = "the record only grows: rows are neither changed nor deleted"
 _PER_EVENT = {
-    "sqlite": (
-        "CREATE TRIGGER {name} BEFORE {event} ON {table} BEGIN SELECT RAISE(ABORT, '" + _MESSAGE + "'); END"
-    ),
+    "sqlite": ("CREATE TRIGGER {name} BEFORE {event} ON {table} BEGIN SELECT RAISE(ABORT, '" + _MESSAGE + "'); END"),
     "postgresql": "CREATE TRIGGER {name} BEFORE {event} ON {table} FOR EACH ROW EXECUTE FUNCTION ulna_only_grows()",
 }
 _BEFORE = {

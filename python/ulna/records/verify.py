@@ -1,7 +1,7 @@
 """Whether the record is what was written: the chain link by link, files by their hashes, rows by what they follow from.
 
-What is found is said with the thing and its place. An entry taken out and the chain linked anew is found by the files of
-entries that are no longer in it, and by heads that stand elsewhere: on certificates that were issued, and wherever
+What is found is said with the thing and its place. An entry taken out and the chain linked anew is found by the files
+of entries that are no longer in it, and by heads that stand elsewhere: on certificates that were issued, and wherever
 somebody noted one.
 """
 
@@ -141,8 +141,8 @@ def _beside(files: Store, named: dict[str, int]) -> Iterator[str]:
     left = [name for name in files.names() if name not in named]
     if left:
         yield (
-            f"{len(left)} file{'s' * (len(left) != 1)} in the store of which no entry speaks ({left[0][:12]}…): left by a "
-            "command that was cut off, or refused"
+            f"{len(left)} file{'s' * (len(left) != 1)} in the store of which no entry speaks ({left[0][:12]}…): "
+            "left by a command that was cut off, or refused"
         )
 
 
@@ -205,4 +205,6 @@ def check_head(head: str, what: str) -> None:
     """Raises UlnaInputError for what is none."""
     seq, _, sha256 = head.partition(":")
     if not (seq.isdigit() and len(sha256) == 64 and all(each in "0123456789abcdef" for each in sha256)):
-        raise UlnaInputError(f"{what}: got '{head[:60]}', expected a head such as 17:3f… with 64 hex digits. Correct it.")
+        raise UlnaInputError(
+            f"{what}: got '{head[:60]}', expected a head such as 17:3f… with 64 hex digits. Correct it."
+        )

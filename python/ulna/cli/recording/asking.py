@@ -37,7 +37,9 @@ def history(name: Name, everything: All = False, where: Where = None, as_json: J
 def compare(
     arm: Arm,
     last: Annotated[int, typer.Option("--last", metavar="N", help="So many calibrations, each with the next.")] = 2,
-    probe: Annotated[str | None, typer.Option("--probe", metavar="NAME", help="With which lengths are compared.")] = None,
+    probe: Annotated[
+        str | None, typer.Option("--probe", metavar="NAME", help="With which lengths are compared.")
+    ] = None,
     shared_u: Annotated[
         float, typer.Option("--shared-u", metavar="RATIO", help="As of ulna compare: u over length of a bar of both.")
     ] = 0.0,

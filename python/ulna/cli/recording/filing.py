@@ -54,7 +54,9 @@ def add(
     beside = {"study": study} if study is not None else {}
     beside |= {f"readings {k}": each for k, each in enumerate(readings or [], start=1)}
     if beside and len(files) > 1:
-        raise UlnaInputError("options --study, --readings: belong to one FILE; expected one. Add the others by themselves.")
+        raise UlnaInputError(
+            "options --study, --readings: belong to one FILE; expected one. Add the others by themselves."
+        )
     made = opened(where, by).add(*files, arm=arm, at=at, artefacts=on or [], with_it=beside)
     if as_json:
         output.print_json({"filed": [{**asdict(each), "path": str(each.path)} for each in made]})

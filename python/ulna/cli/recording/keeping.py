@@ -7,12 +7,9 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.help import Command
 from ulna.cli.options import Force, Json
 from ulna.cli.recording.options import By, Where, opened
 from ulna.cli.running import guard
-
-__all__ = ["COMMANDS", "FIRST", "Command"]
 
 Database = Annotated[
     str | None,
@@ -36,7 +33,8 @@ def init(
 
     Records.init(folder, database, by)
     output.say(
-        f"{folder}: a record, empty yet. So that nobody types it: {WHERE}={folder.absolute()}, or in {settings_path()}\n"
+        f"{folder}: a record, empty yet. So that nobody types it: {WHERE}={folder.absolute()}, or in "
+        f"{settings_path()}\n"
         f'  format = "ulna-settings/1"\n  [record]\n  folder = "{folder.absolute()}"\n'
         "Next: ulna record arm NAME --serial NUMBER"
     )

@@ -126,7 +126,9 @@ def event(
     kind: Annotated[
         str,
         typer.Argument(
-            metavar="KIND", help="knock, repair, move, adjustment, firmware, quarantine, release, note.", show_default=False
+            metavar="KIND",
+            help="knock, repair, move, adjustment, firmware, quarantine, release, note.",
+            show_default=False,
         ),
     ],
     text: Annotated[str, typer.Argument(metavar="TEXT", help="What happened.", show_default=False)],

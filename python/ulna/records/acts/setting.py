@@ -39,7 +39,8 @@ def _numbers(value: str) -> None:
         one = other = ""
     if one == other or not one.isprintable() or len(one) > 60:
         raise UlnaInputError(
-            f"setting numbers: got '{value[:40]}', expected a pattern with {{n}}, such as AB-{{year}}-{{n:04}}. Correct it."
+            f"setting numbers: got '{value[:40]}', expected a pattern with {{n}}, such as AB-{{year}}-{{n:04}}. "
+            "Correct it."
         )
 
 

@@ -29,7 +29,8 @@ class ResultKind(FiledKind):
         return Read(result.arm.name, result.provenance.get("time"), beside)
 
     def rows(self, content: bytes, about: About) -> Iterator[Row]:
-        """One calibration, its parameters, and the figures of the arm that it began from and of the one that it found."""
+        """One calibration, its parameters, and the figures of the arm that it began from and of the one that it
+        found."""
         document = json.loads(content)
         fit = document["fit"]
         common = {"arm": about.arm, "sha256": about.sha256, "at": about.at}

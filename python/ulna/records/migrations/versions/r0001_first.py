@@ -13,7 +13,8 @@ depends_on = None
 
 def upgrade() -> None:
     """Make every table."""
-    op.create_table("calibration",
+    op.create_table(
+        "calibration",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("arm", sa.Text(), nullable=False),
@@ -27,7 +28,8 @@ def upgrade() -> None:
     )
     op.create_index("calibration_arm_at", "calibration", ["arm", "at"])
     op.create_index("calibration_sha256", "calibration", ["sha256"])
-    op.create_table("certificate",
+    op.create_table(
+        "certificate",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("number", sa.Text(), nullable=False),
@@ -42,7 +44,8 @@ def upgrade() -> None:
     )
     op.create_index("certificate_arm_issued_at", "certificate", ["arm", "issued_at"])
     op.create_index("certificate_number", "certificate", ["number"])
-    op.create_table("certified",
+    op.create_table(
+        "certified",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("artefact", sa.Text(), nullable=False),
@@ -60,7 +63,8 @@ def upgrade() -> None:
         sa.Column("valid_to", sa.Text()),
     )
     op.create_index("certified_artefact_quantity_seq", "certified", ["artefact", "quantity", "seq"])
-    op.create_table("entry",
+    op.create_table(
+        "entry",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("at", sa.String(), nullable=False),
         sa.Column("actor", sa.String(), nullable=False),
@@ -71,7 +75,8 @@ def upgrade() -> None:
         sa.Column("text", sa.Text(), nullable=False),
     )
     op.create_index("entry_subject", "entry", ["subject", "seq"])
-    op.create_table("equipment",
+    op.create_table(
+        "equipment",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("name", sa.Text(), nullable=False),
@@ -88,7 +93,8 @@ def upgrade() -> None:
     )
     op.create_index("equipment_kind", "equipment", ["kind"])
     op.create_index("equipment_name_seq", "equipment", ["name", "seq"])
-    op.create_table("event",
+    op.create_table(
+        "event",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("equipment", sa.Text(), nullable=False),
@@ -97,7 +103,8 @@ def upgrade() -> None:
         sa.Column("text", sa.Text(), nullable=False),
     )
     op.create_index("event_equipment_at", "event", ["equipment", "at"])
-    op.create_table("figure",
+    op.create_table(
+        "figure",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("arm", sa.Text(), nullable=False),
@@ -116,7 +123,8 @@ def upgrade() -> None:
     )
     op.create_index("figure_arm_name_at", "figure", ["arm", "name", "at"])
     op.create_index("figure_sha256", "figure", ["sha256"])
-    op.create_table("file",
+    op.create_table(
+        "file",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("sha256", sa.Text(), nullable=False),
@@ -125,7 +133,8 @@ def upgrade() -> None:
         sa.Column("role", sa.Text(), nullable=False),
     )
     op.create_index("file_sha256", "file", ["sha256"])
-    op.create_table("interval",
+    op.create_table(
+        "interval",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("equipment", sa.Text(), nullable=False),
@@ -137,7 +146,8 @@ def upgrade() -> None:
     )
     op.create_index("interval_due_at", "interval", ["due_at"])
     op.create_index("interval_equipment_seq", "interval", ["equipment", "seq"])
-    op.create_table("parameter",
+    op.create_table(
+        "parameter",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("arm", sa.Text(), nullable=False),
@@ -151,21 +161,24 @@ def upgrade() -> None:
     )
     op.create_index("parameter_arm_name_at", "parameter", ["arm", "name", "at"])
     op.create_index("parameter_sha256", "parameter", ["sha256"])
-    op.create_table("person",
+    op.create_table(
+        "person",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("name", sa.Text(), nullable=False),
         sa.Column("roles", sa.Text(), nullable=False),
     )
     op.create_index("person_name_seq", "person", ["name", "seq"])
-    op.create_table("setting",
+    op.create_table(
+        "setting",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("name", sa.Text(), nullable=False),
         sa.Column("value", sa.Text(), nullable=False),
     )
     op.create_index("setting_name_seq", "setting", ["name", "seq"])
-    op.create_table("standing",
+    op.create_table(
+        "standing",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("subject", sa.Text(), nullable=False),
@@ -173,7 +186,8 @@ def upgrade() -> None:
         sa.Column("reason", sa.Text(), nullable=False),
     )
     op.create_index("standing_subject_seq", "standing", ["subject", "seq"])
-    op.create_table("used",
+    op.create_table(
+        "used",
         sa.Column("seq", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("line", sa.Integer(), primary_key=True, autoincrement=False),
         sa.Column("sha256", sa.Text(), nullable=False),
