@@ -15,6 +15,7 @@ FLOORS = {
     "_core": 0,
     "ground": 1,
     "work": 2,
+    "control": 2,
     "formats": 2,
     "geometry": 2,
     "arm": 3,

@@ -1,0 +1,70 @@
+"""What a statistic rests on, and figures as it takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
+from ulna.ground.quantiles import student
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Of which figures something is said. Where they are too few, nothing else is."""
+
+    method: str
+    n: int
+    """Figures that it rests on."""
+    fewest: int
+    """Of them that the method asks for."""
+    span_days: float | None
+    """From the first to the last; None where it is not known when they were."""
+
+    @property
+    def too_few(self) -> bool:
+        """Whether the method says nothing of them."""
+        return self.n < self.fewest
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        over = "" if self.span_days is None else f" over {self.span_days:.0f} days"
+        if self.too_few:
+            return f"too few: {self.n}{over}, and at least {self.fewest} are needed"
+        return f"of {self.n}{over}"
+
+
+def basis(method: str, n: int, fewest: int, days: F64 | None = None) -> Basis:
+    """days: (n,) when each figure was, any order, since any day; None where that is not known."""
+    span = float(np.ptp(days)) if days is not None and len(days) else None
+    return Basis(method, n, fewest, span)
+
+
+def figures(values: Sequence[float] | F64, what: str) -> F64:
+    """(N,) numbers, of any unit. Raises UlnaInputError for what is not a list of finite ones."""
+    found = np.asarray(values, dtype=np.float64)
+    if found.ndim != 1 or not np.isfinite(found).all():
+        raise UlnaInputError(
+            f"{what}: got {'a number that is not finite' if found.ndim == 1 else f'{found.ndim} dimensions'}; expected "
+            "a list of finite numbers. Correct it."
+        )
+    return found
+
+
+def as_many(values: Sequence[float] | F64, of: F64, what: str) -> F64:
+    """The same, one for each of `of`, (N,). Raises UlnaInputError for another number of them."""
+    found = figures(values, what)
+    if len(found) != len(of):
+        raise UlnaInputError(f"{what}: got {len(found)}, expected one for each of {len(of)} figures. Correct it.")
+    return found
+
+
+@lru_cache(maxsize=1024)
+def two_sided(freedom: int, p: float) -> float:
+    """The t that Student's, with 1 or more degrees of freedom, is inside of with probability p, on both sides."""
+    return float(student(float(freedom), 0.5 * (1.0 + p)))
