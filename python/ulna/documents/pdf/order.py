@@ -21,6 +21,7 @@ from ulna.documents.sections import (
     plots,
     provenance,
     quality,
+    signature,
     summary,
     traceability,
     uncertainty,
@@ -44,9 +45,10 @@ class Part:
     blocks: Sequence[blocks.Block]
 
 
-def parts(content: Content, words: Words) -> list[Part]:
+def parts(content: Content, words: Words, annex: bool) -> list[Part]:
     """All that there is; a part without a block is left out."""
-    found = [*_first_page(content, words), *_results(content, words), *_plots(content, words), *_end(content, words)]
+    shown = _plots(content, words) if annex else []
+    found = [*_first_page(content, words), *_results(content, words), *shown, *_end(content, words)]
     return [part for part in found if part.blocks]
 
 
@@ -107,15 +109,12 @@ def _plots(content: Content, words: Words) -> list[Part]:
 
 
 def _end(content: Content, words: Words) -> list[Part]:
-    made = content.provenance
     sources: list[blocks.Block] = [provenance.facts(content, words).without(LEFT_OUT), provenance.files(content, words)]
-    draft = words("paper.draft-note", program=made.program, version=made.version)
-    signature: list[blocks.Block] = [blocks.Paragraph(draft), blocks.Paragraph(words("decimal-note"), "note")]
     return [
         _part("artefacts", words, touched.artefacts(content, words)),
         _part("outliers", words, far_off.outliers(content, words, MOST_OUTLIERS)),
         _part("provenance", words, sources),
-        _part("signature", words, signature),
+        _part("signature", words, signature.signature(content, words)),
     ]
 
 
