@@ -47,8 +47,7 @@ def certificate(
     wrote, of the same arm. Of the PDF alone: language; annex: with how the fit went, plots and outliers behind the
     certificate; study, evaluation, cross_validation, fonts: as `ulna report` takes them.
 
-    Raises UlnaInputError for files that cannot be used, and for an issued certificate of a calibration that did not
-    converge.
+    Raises UlnaInputError for files that cannot be used, and for a calibration that did not converge.
     """
 
     def path(given: str | Path | None) -> Path | None:
@@ -62,9 +61,12 @@ def certificate(
 
 
 def _pdf(asked: _Asked) -> bytes:
+    from ulna.documents.certified.source import certified_result
     from ulna.documents.gather import gather
     from ulna.documents.pdf.render import render
+    from ulna.documents.sources.result import result_file
 
+    certified_result(result_file(asked.result))
     content = gather(
         asked.result,
         asked.study,

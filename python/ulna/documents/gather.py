@@ -18,6 +18,7 @@ from ulna.documents.content.distribution import samples
 from ulna.documents.content.environment import environment
 from ulna.documents.content.held_out import held_out
 from ulna.documents.content.missing import missing_parts
+from ulna.documents.content.model import model
 from ulna.documents.content.parameters import observability, parameters
 from ulna.documents.content.provenance import provenance
 from ulna.documents.content.quality import quality_rows, residual_row
@@ -84,6 +85,7 @@ def gather(
         arm=found.arm.name,
         joints=found.arm.n,
         probes=list(found.arm.probes),
+        model=model(found.arm),
         standing=standing_arm(found.arm, study_read, readings),
         fit=found.fit,
         quality=[*quality_rows("fitted", found.before, found.after), *filter(None, [residual_row(found)]), *rows],

@@ -22,6 +22,7 @@ from ulna.documents.content.clouds import Cloud, Quiver
 from ulna.documents.content.coverage import JudgedReadings
 from ulna.documents.content.distribution import Sample
 from ulna.documents.content.environment import Environment
+from ulna.documents.content.model import Model
 from ulna.documents.content.parameters import Observability, Parameters
 from ulna.documents.content.provenance import Provenance
 from ulna.documents.content.quality import QualityRow
@@ -39,6 +40,7 @@ class Content:
     arm: str
     joints: int
     probes: list[str]
+    model: Model
     standing: StandingArm
     fit: FitSummary
     quality: list[QualityRow]

@@ -62,6 +62,11 @@ def _laboratory(sheet: Sheet, parent: Element, laboratory: Laboratory) -> None:
     traceability = file.traceability
     said = sheet.own("dcc.traceability-missing") if traceability is None else sheet.theirs(traceability.statement)
     statement(sheet, parent, sheet.own("section.traceability"), said, "basic_metrologicallyTraceableToSI")
+    for key in ("item-alone", "in-full"):
+        statement(sheet, parent, sheet.own("section.statements"), sheet.own(f"statement.{key}"))
+    condition = file.item.condition
+    said = sheet.own("laboratory.not-stated") if condition is None else sheet.theirs(condition)
+    statement(sheet, parent, sheet.own("laboratory.condition"), said)
     accredited = file.laboratory.accreditation
     if accredited is not None:
         key = "dcc.accreditation" if accredited.standard is None else "dcc.accreditation-standard"

@@ -43,16 +43,18 @@ def certificate(
     words = Words(language)
     data = _about(content, words)
     parts = order.parts(content, words, annex)
+    behind = order.annexed(content, words) if annex else []
     # labels of plots are words of the dictionary: all of them, so that fonts are known before they are drawn
     own = [text for key, text in dictionary(language).items() if not key.startswith(_ELSEWHERE)]
-    chosen = choose([*texts_in(data), *texts_in(parts), *own], fonts)
+    chosen = choose([*texts_in(data), *texts_in([*parts, *behind]), *own], fonts)
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     to = Setting(content, words)
     with looks([family.regular for family in chosen.more]):
         data["blocks"] = [each for part in parts for each in _set(part, to)]
+        data["annex"] = [each for part in behind for each in _set(part, to)]
     if content.issued is None:
-        data["blocks"].append({"kind": "signatures", "people": head.people(content)})
+        data["blocks"].append({"kind": "signatures", "people": head.people(content, words)})
     return data, chosen
 
 
@@ -75,12 +77,13 @@ def _about(content: Content, words: Words) -> dict[str, Any]:
         "date": head.date(content),
         "program": program,
         "letterhead": head.letterhead(content, words),
-        "people": head.people(content),
+        "people": head.people(content, words),
         "labels": {
             "number": say("laboratory.identifier") if signed else say("provenance.result"),
             "draft": say("paper.draft") if content.issued is None else "",
             "sign": say("paper.sign"),
             "page": page_label(words),
+            "annex": say("paper.annex"),
             "end": say("paper.end") if signed else say("paper.end-report"),
         },
     }

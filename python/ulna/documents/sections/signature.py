@@ -16,7 +16,7 @@ def signature(content: Content, words: Words) -> list[Block]:
         found: Block = Paragraph(words("paper.draft-note", program=made.program, version=made.version))
     else:
         found = Facts(_issued(content.issued, words))
-    return [found, Paragraph(words("decimal-note"), "note")]
+    return [found, Paragraph(words("paper.decimals"), "note")]
 
 
 def _issued(issued: Issued, words: Words) -> list[Fact]:
