@@ -14,6 +14,8 @@ from .calibration.evaluate import Evaluation, evaluate
 from .calibration.identify import identify
 from .calibration.result import Result
 from .comparison.compare import Comparison, compare
+from .documents.certificate import certificate
+from .documents.laboratory.issued import Issued
 from .ground.errors import InputWarning, UlnaInputError
 from .measuring.measure import measure
 from .measuring.measured import Length, Measured
@@ -41,6 +43,7 @@ __all__ = [
     "Evaluation",
     "FitOptions",
     "InputWarning",
+    "Issued",
     "Joint",
     "Length",
     "Measured",
@@ -62,6 +65,7 @@ __all__ = [
     "__version__",
     "batch",
     "calibrate",
+    "certificate",
     "compare",
     "cross_validate",
     "evaluate",

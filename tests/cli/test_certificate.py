@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from tests import dcc_reading as reading
 from tests.cli_runs import assert_bad_input, run
+from tests.pdf_reading import Pdf, holds
 
 HERE = Path(__file__).resolve().parents[1]
 RESULT = HERE / "data" / "fossils" / "result-1.json"
@@ -55,6 +56,21 @@ def test_a_folder_of_results_will_do(tmp_path: Path) -> None:
     assert run("certificate", tmp_path, LABORATORY, "--dcc", "-o", tmp_path / "c.xml").returncode == 0
 
 
+def test_on_paper_it_is_short_and_the_annex_is_asked_for(tmp_path: Path) -> None:
+    short, long = tmp_path / "short.pdf", tmp_path / "long.pdf"
+    done = run("certificate", RESULT, LABORATORY, "-o", short)
+    assert done.returncode == 0, done.stderr
+    assert "unsigned draft" in done.stderr
+    found = json.loads(
+        run("certificate", RESULT, LABORATORY, "--annex", "--language", "de", "-o", long, "--json").stdout
+    )
+    assert found == {"file": str(long), "format": "PDF", "issued": False, "signed": False, "annex": True}
+    pages = [len(Pdf(path.read_bytes()).texts) for path in (short, long)]
+    assert pages[0] <= 3 < pages[1]
+    holds(Pdf(long.read_bytes()), "Anhang: Diagnose der Kalibrierung", "Der Anhang ist Teil dieses Kalibrierscheins.")
+    assert_bad_input(run("certificate", RESULT, LABORATORY, "-o", short), f"{short}: exists already", "--force")
+
+
 def test_make_lab_writes_a_file_to_fill_in(tmp_path: Path) -> None:
     out = tmp_path / "lab.toml"
     done = run("certificate", "--make-lab", "-o", out)
@@ -72,7 +88,11 @@ def test_make_lab_writes_a_file_to_fill_in(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        ([RESULT, LABORATORY, "-o", "c.pdf"], ("ends in .pdf", "expected .xml", "ulna report")),
+        ([RESULT, LABORATORY, "-o", "c.odt"], ("ends in .odt", "expected .pdf or .xml")),
+        ([RESULT, LABORATORY, "--dcc", "--pdf", "-o", "c.pdf"], ("--dcc and --pdf", "one file cannot be both")),
+        ([RESULT, LABORATORY, "--annex", "-o", "c.xml"], ("option --annex", "is of a PDF", "ending in .pdf")),
+        ([RESULT, LABORATORY, "--dcc", "-o", "c.pdf"], ("option --dcc", "c.pdf ends in .pdf")),
+        ([RESULT, LABORATORY, "--language", "fr", "-o", "c.pdf"], ("--language", "en, de or zh")),
         ([RESULT, LABORATORY, "--dcc"], ("option -o is missing", "Add -o FILE")),
         ([RESULT, "--dcc", "-o", "c.xml"], ("argument LAB is missing", "--make-lab")),
         (["--dcc", "-o", "c.xml"], ("argument RESULT is missing",)),

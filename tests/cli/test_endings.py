@@ -55,8 +55,7 @@ def test_commands_ask_it(tmp_path: Path, root: Path) -> None:
     result, lab = fossils / "result-1.json", fossils / "lab-1.toml"
     for arguments, said in (
         (["report", result, "-o", tmp_path / "a.docx"], "expected .html or .pdf"),
-        (["certificate", result, lab, "-o", tmp_path / "a.txt"], "expected .xml"),
-        (["certificate", result, lab, "-o", tmp_path / "a.pdf"], "ulna report"),
+        (["certificate", result, lab, "-o", tmp_path / "a.txt"], "expected .pdf or .xml"),
         (["show", tmp_path / "arm.toml", "-o", tmp_path / "a.png"], "expected .html or .htm"),
         (["measure", tmp_path / "arm.toml", "none.csv", "-o", tmp_path / "a.docx"], ".parquet"),
     ):

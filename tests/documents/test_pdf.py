@@ -171,7 +171,13 @@ def test_an_acceptance_test_is_there_with_its_decision(lengths, tmp_path):
         text = re.escape(squeezed(figure.name)) + r"\w*" + verdict + re.escape(squeezed(value + expanded))
         assert re.search(text, pdf.all_text), figure.name
         holds(pdf, figure.formula)
-    holds(pdf, "in the manner of", "On the whole:", "Dashed: ± maximum permissible error", found.sha256)
+    holds(
+        pdf,
+        "in the manner of",
+        "On the whole:",
+        "Dashed: ± maximum permissible error",
+        content.provenance.beside[0].sha256,
+    )
     assert squeezed("No statement of conformity") not in pdf.all_text
 
 

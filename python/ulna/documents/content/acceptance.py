@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,6 +12,7 @@ from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.documents.languages.said import Said
 from ulna.documents.sources.source import Taken
 from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
 from ulna.verification.kinds.registry import LENGTHS
 from ulna.verification.lifted import Lifted
 from ulna.verification.result_file import TestedTable, VerificationFile
@@ -42,10 +44,8 @@ class TestedLengths:
 class Verification:
     """What `ulna verify` found."""
 
-    name: str
-    """Of the file."""
-    sha256: str
     file: VerificationFile
+    """Of several files one, with the states of all."""
     remarks: list[Said]
     """Where it is not of this result's arm."""
     lengths: list[TestedLengths]
@@ -57,9 +57,14 @@ class Verification:
     """What the arm carries beside its probe."""
 
 
-def verification(taken: Taken[VerificationFile], laboratory: LaboratoryFile | None = None) -> Verification:
-    """What `ulna verify` found, as the laboratory may state it, with its length errors as arrays."""
-    stated = stated_by(taken.value, laboratory)
+def verification(
+    taken: Sequence[Taken[VerificationFile]], laboratory: LaboratoryFile | None = None
+) -> Verification | None:
+    """What `ulna verify` found, as the laboratory may state it, with its length errors as arrays; None of no file.
+    Raises UlnaInputError for files that are no one test, as found and as left."""
+    if not taken:
+        return None
+    stated = stated_by(one_test(taken), laboratory)
     lengths = [
         _lengths(state.state, test)
         for state in stated.file.states
@@ -67,15 +72,39 @@ def verification(taken: Taken[VerificationFile], laboratory: LaboratoryFile | No
         if test.kind in LENGTHS and test.figures
     ]
     return Verification(
-        taken.file.name,
-        taken.file.sha256,
         stated.file,
-        taken.remarks,
+        [said for each in taken for said in each.remarks],
         lengths,
         stated.lifted,
         stated.without,
         scanner_of(stated.file, laboratory),
     )
+
+
+def one_test(taken: Sequence[Taken[VerificationFile]]) -> VerificationFile:
+    """As found and as left in one. Raises UlnaInputError where a state stands twice, or one was decided otherwise."""
+    first, *others = taken
+    for each in others:
+        same = {
+            "profile.name": each.value.profile.name == first.value.profile.name,
+            "decision": each.value.decision == first.value.decision,
+        }
+        for key in (key for key, is_same in same.items() if not is_same):
+            raise UlnaInputError(
+                f"{each.file.path}: key '{key}': differs from that of {first.file.path}; expected one profile and one "
+                "decision rule as found and as left. Verify one of them again, or give one alone."
+            )
+    states = [state for each in taken for state in each.value.states]
+    names = [state.state for state in states]
+    if len(set(names)) != len(names):
+        raise UlnaInputError(
+            f"{taken[-1].file.path}: key 'states': {', '.join(names)} of all files given; expected each state once. "
+            "Give one file for each."
+        )
+    states.sort(key=lambda state: state.state != "as-found")
+    every = [each for file in taken for each in file.value.artefacts]
+    artefacts = [each for k, each in enumerate(every) if each not in every[:k]]
+    return first.value.model_copy(update={"states": states, "artefacts": artefacts})
 
 
 def scanner_of(file: VerificationFile, laboratory: LaboratoryFile | None) -> str | None:

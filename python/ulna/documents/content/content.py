@@ -22,12 +22,14 @@ from ulna.documents.content.clouds import Cloud, Quiver
 from ulna.documents.content.coverage import JudgedReadings
 from ulna.documents.content.distribution import Sample
 from ulna.documents.content.environment import Environment
+from ulna.documents.content.model import Model
 from ulna.documents.content.parameters import Observability, Parameters
 from ulna.documents.content.provenance import Provenance
 from ulna.documents.content.quality import QualityRow
 from ulna.documents.content.readings import Lengths, ReadingRows
 from ulna.documents.content.standing import StandingArm
 from ulna.documents.laboratory.file import Laboratory
+from ulna.documents.laboratory.issued import Issued
 from ulna.documents.languages.said import Said
 
 
@@ -38,6 +40,7 @@ class Content:
     arm: str
     joints: int
     probes: list[str]
+    model: Model
     standing: StandingArm
     fit: FitSummary
     quality: list[QualityRow]
@@ -66,7 +69,9 @@ class Content:
     verification: Verification | None
     """The acceptance test, where one was given."""
     laboratory: Laboratory | None
-    """What the laboratory file says, where one was given."""
+    """What the laboratory file says, where one was given; of a certificate that was issued with its number and day."""
+    issued: Issued | None
+    """That it was issued; None for a draft."""
     missing: dict[str, Said]
     """Section → what it lacks and what would be needed: "study", "joints", "temperature", "verification", …"""
     provenance: Provenance

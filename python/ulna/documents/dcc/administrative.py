@@ -151,5 +151,5 @@ def _person(sheet: Sheet, parent: Element, person: PersonTable) -> None:
     for tag, text in (("eMail", person.email), ("phone", person.phone)):
         if text is not None:
             sheet.dcc(contact, tag, text)
-    sheet.dcc(element, "role", person.role)
+    sheet.dcc(element, "role", sheet.theirs(person.role)[0][1])
     sheet.dcc(element, "mainSigner", "true" if person.main_signer else "false")

@@ -21,6 +21,7 @@ from ulna.documents.dcc.conditions import calibration_method, input_files, labor
 from ulna.documents.dcc.sheet import DCC, NAMES, Element, Sheet
 from ulna.documents.dcc.statements import statements
 from ulna.documents.laboratory.file import Laboratory, load_laboratory
+from ulna.documents.laboratory.issued import Issued
 from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.documents.sources.result import result_file
 
@@ -40,6 +41,8 @@ class Certificate:
     tested: list[StatedTests]
     missing: list[str]
     """What the laboratory file could have said and did not."""
+    issued: bool = False
+    """Whether it is said to be issued; a draft else."""
 
     def as_dict(self) -> dict[str, Any]:
         """What it holds, in numbers: JSON types only."""
@@ -47,6 +50,7 @@ class Certificate:
         return {
             "format": f"DCC {VERSION}",
             "identifier": self.identifier,
+            "issued": self.issued,
             "signed": False,
             "bytes": len(self.content),
             "parameters": {
@@ -77,14 +81,16 @@ def dcc_certificate(
     laboratory: str | Path,
     verification: Sequence[str | Path] = (),
     tested: Sequence[StatedTests] = (),
+    issued: Issued | None = None,
 ) -> Certificate:
-    """A DCC 3.3.0 of a result.json (or its folder) and a laboratory file. It is an unsigned draft.
+    """A DCC 3.3.0 of a result.json (or its folder) and a laboratory file. It is an unsigned draft,
+    unless it was `issued`; signed it is in no case.
 
     verification: files that `ulna verify` wrote, of the same arm; tested: further tests. Raises UlnaInputError, also
     for a calibration that did not converge, tests of another arm, and texts that XML cannot hold.
     """
     path = result_file(Path(result))
-    known = load_laboratory(laboratory)
+    known = load_laboratory(laboratory) if issued is None else issued.on(load_laboratory(laboratory))
     calibration, stated = certified_result(path)
     found = calibration.result
     tested = [
@@ -97,7 +103,7 @@ def dcc_certificate(
     root.set(f"{{{_XSI}}}schemaLocation", f"{DCC} {DCC}/v{VERSION}/dcc.xsd")
     of_laboratory, of_result = Sheet(languages, str(known.path)), Sheet(languages, str(path))
     data = administrative_data(of_laboratory, root, known)
-    statements(of_result, of_result.dcc(data, "statements"), known, found, stated)
+    statements(of_result, of_result.dcc(data, "statements"), known, found, stated, issued)
     for tests in tested:
         conformity_statements(Sheet(languages, tests.source), data[-1], tests)
     measured = of_result.dcc(root, "measurementResults")
@@ -106,7 +112,8 @@ def dcc_certificate(
         tests_result(Sheet(languages, tests.source), of_laboratory, measured, tests, known.file)
     etree.indent(root)
     content = bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8")) + b"\n"
-    return Certificate(content, known.file.certificate.identifier, stated, list(tested), _missing(known.file))
+    number = known.file.certificate.identifier
+    return Certificate(content, number, stated, list(tested), _missing(known.file), issued is not None)
 
 
 def _calibration(

@@ -10,6 +10,7 @@ from ulna.calibration.result import Result
 from ulna.documents.certified.parameters import StatedParameters
 from ulna.documents.dcc.sheet import Element, Sheet, Texts
 from ulna.documents.laboratory.file import Laboratory
+from ulna.documents.laboratory.issued import Issued
 from ulna.ground.digits import degrees_of_freedom
 
 
@@ -21,9 +22,16 @@ def statement(sheet: Sheet, parent: Element, name: Texts, text: Texts, ref: str 
     return element
 
 
-def statements(sheet: Sheet, parent: Element, laboratory: Laboratory, result: Result, stated: StatedParameters) -> None:
+def statements(
+    sheet: Sheet,
+    parent: Element,
+    laboratory: Laboratory,
+    result: Result,
+    stated: StatedParameters,
+    issued: Issued | None = None,
+) -> None:
     """All but those on conformity."""
-    statement(sheet, parent, sheet.own("dcc.draft-name"), sheet.own("dcc.draft"))
+    _standing(sheet, parent, issued)
     _laboratory(sheet, parent, laboratory)
     if stated.fitted:
         statement(sheet, parent, sheet.own("section.uncertainty"), _uncertainty(sheet, result, stated))
@@ -37,11 +45,28 @@ def statements(sheet: Sheet, parent: Element, laboratory: Laboratory, result: Re
         statement(sheet, parent, sheet.own("laboratory.remark"), sheet.theirs(remark))
 
 
+def _standing(sheet: Sheet, parent: Element, issued: Issued | None) -> None:
+    """A draft, or issued by whom; where it stands in a record."""
+    if issued is None:
+        statement(sheet, parent, sheet.own("dcc.draft-name"), sheet.own("dcc.draft"))
+        return
+    by = {"day": issued.day.isoformat(), "by": issued.issued_by, "approved": issued.authorised_by}
+    statement(sheet, parent, sheet.own("laboratory.issued"), sheet.own("dcc.issued", **by))
+    if issued.audit_head is not None:
+        name = sheet.own("provenance.audit-head")
+        statement(sheet, parent, name, sheet.theirs(issued.audit_head))
+
+
 def _laboratory(sheet: Sheet, parent: Element, laboratory: Laboratory) -> None:
     file = laboratory.file
     traceability = file.traceability
     said = sheet.own("dcc.traceability-missing") if traceability is None else sheet.theirs(traceability.statement)
     statement(sheet, parent, sheet.own("section.traceability"), said, "basic_metrologicallyTraceableToSI")
+    for key in ("item-alone", "in-full"):
+        statement(sheet, parent, sheet.own("section.statements"), sheet.own(f"statement.{key}"))
+    condition = file.item.condition
+    said = sheet.own("laboratory.not-stated") if condition is None else sheet.theirs(condition)
+    statement(sheet, parent, sheet.own("laboratory.condition"), said)
     accredited = file.laboratory.accreditation
     if accredited is not None:
         key = "dcc.accreditation" if accredited.standard is None else "dcc.accreditation-standard"

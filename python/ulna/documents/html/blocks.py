@@ -64,6 +64,7 @@ LOOKS = {
     "risk": "",
     "global-risk": "",
     "artefacts": "",
+    "standards": "",
     "equipment": "",
     "outliers": " tall",
     "placements": " tall",

@@ -23,12 +23,14 @@ from ulna.documents.sections import (
     extras,
     laboratory,
     lacking,
+    method,
     observability,
     parameters,
     placements,
     plots,
     provenance,
     quality,
+    risk,
     summary,
     traceability,
 )
@@ -82,6 +84,7 @@ def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
             *summary.counts(content, words),
         ],
         "laboratory": [] if content.laboratory is None else [laboratory.facts(content, words)],
+        "method": method.method(content, words),
         "quality": quality.quality(content, words),
         "distribution": plots.distributions(content, words),
         "joints": [
@@ -93,7 +96,7 @@ def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
         "poses": plots.poses(content),
         "space": [*plots.space(content), *lacks("study", "quiver")],
         "arm": plots.arm(content, words),
-        "parameters": parameters.parameters(content, words),
+        "parameters": [*parameters.parameters(content, words), *_cylindrical(content, words)],
         "determined": determined.determined(content, words),
         "correlation": observability.correlation(content, words),
         "observability": observability.observability(content, words),
@@ -108,7 +111,7 @@ def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
         ],
         "artefacts": touched.artefacts(content, words),
         "environment": conditions.conditions(content, words),
-        "decision": decision.decision(content, words),
+        "decision": [*decision.decision(content, words), *([] if found is None else risk.risks(found.file, words))],
         "traceability": [*traceability.traceability(content, words), *lacks("laboratory")],
         "outliers": far_off.outliers(content, words, MOST_OUTLIERS),
         "placements": placements.placements(content, words, MOST_PLACEMENTS),
@@ -127,6 +130,11 @@ def _lacks(content: Content, words: Words) -> Callable[..., list[blocks.Block]]:
 def _clouds(drawings: Sequence[blocks.Drawing], words: Words) -> Blocks:
     """Plots side by side, their legend once for all of them."""
     return [cloud_legend(words), blocks.Drawings(drawings, narrow=True)] if drawings else []
+
+
+def _cylindrical(content: Content, words: Words) -> list[blocks.Block]:
+    found = parameters.cylindrical(content, words)
+    return [blocks.Heading(words("parameters.cylindrical")), *found] if found else []
 
 
 def _drawn(plot: Plot | Still, drawn: list[Plot]) -> Plot | Still:

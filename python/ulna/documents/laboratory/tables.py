@@ -90,7 +90,7 @@ class PersonTable(Strict):
     """Somebody who answers for the certificate."""
 
     name: Line
-    role: Line
+    role: Text
     main_signer: bool = False
     """One signs first."""
     email: Line | None = None
@@ -127,6 +127,8 @@ class ItemTable(Strict):
     serial: Line
     """The manufacturer's serial number."""
     description: Text | None = None
+    condition: Text | None = None
+    """In what condition it was received."""
     identifications: list[IdentificationTable] = Field(default_factory=list)
     """Further numbers."""
     scanner: Line | None = None
@@ -144,6 +146,8 @@ class EquipmentTable(Strict):
     """Identifier of its own calibration certificate."""
     certified_by: Line | None = None
     """Who issued that."""
+    artefacts: list[Line] = Field(default_factory=list)
+    """What it is called in the study and in the verify file: certificates say with which u it was used."""
 
 
 class TemperatureCondition(Strict):

@@ -52,6 +52,7 @@ manufacturer = ""
 model = ""
 serial = ""
 # description = ""
+# condition = ""               # on receipt: "no damage visible", say
 # scanner = ""                 # what the arm carries beside its probe: it is said that it was not tested
 # identifications = [{ issuer = "customer", value = "", name = "Inventory number" }]
 
@@ -68,6 +69,7 @@ temperature = { value = "", u = "", unit = "°C" }
 # model = ""
 # certificate = ""             # identifier of its own calibration certificate
 # certified_by = ""
+# artefacts = ["bar"]          # what it is called in the study and in the verify file
 
 # [traceability]
 # statement = ""
@@ -79,6 +81,7 @@ temperature = { value = "", u = "", unit = "°C" }
 # [[method]]                   # procedures that the laboratory followed; Ulna adds how it fitted
 # name = ""
 # description = ""
+# condition = ""               # on receipt: "no damage visible", say
 # norms = ["ISO 10360-12:2016"]
 # references = [""]
 """

@@ -20,6 +20,8 @@ class Language:
     """Marks about a command where there are no letters of another width."""
     region: str | None = None
     """After ISO 3166-1, where the setting of letters depends on it."""
+    comma: bool = False
+    """Whether decimals stand behind a comma on paper; on pages that are copied from they stand behind a point."""
     han: bool = False
     """Whether its quotation marks and dashes are those of a Han font."""
 
@@ -29,7 +31,7 @@ LANGUAGES: dict[str, Language] = {
     each.code: each
     for each in (
         Language("en", ("“", "”")),
-        Language("de", ("„", "“")),
+        Language("de", ("„", "“"), comma=True),
         Language("zh", ("“", "”"), region="cn", han=True),
     )
 }

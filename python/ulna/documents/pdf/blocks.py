@@ -16,8 +16,8 @@ def heading(text: str, level: int = 1) -> Block:
 
 
 def paragraph(text: Cell, style: str = "plain") -> Block:
-    """style: "plain", "note" (small), "lead" (small, kept with what follows), "missing" (marked: something is not
-    known) or "bad" (marked strongly)."""
+    """style: "plain", "note" (small), "lead" (small, kept with what follows), "good" (strong), "missing" (marked:
+    something is not known) or "bad" (marked strongly)."""
     return {"kind": "paragraph", "text": text, "style": style}
 
 

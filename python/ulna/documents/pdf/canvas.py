@@ -12,9 +12,11 @@ from typing import Any
 from matplotlib import font_manager, rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import Formatter
 
+from ulna.documents.languages.languages import language_of
 from ulna.documents.languages.words import Words
-from ulna.documents.pdf.text import line
+from ulna.documents.pdf.text import decimals, line
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.style import STYLE
 
@@ -58,9 +60,38 @@ def axes_of(width_mm: float, height_mm: float) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def svg_of(figure: Figure) -> str:
-    """As vectors. Raises UlnaInputError where a label has a sign that Matplotlib finds in no font: it reads the first
-    of several fonts in a file only."""
+def _with_commas(figure: Figure) -> None:
+    """Ticks whose decimals stand behind a comma."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(_Comma(axis.get_major_formatter()))
+
+
+class _Comma(Formatter):
+    """What another formatter says, with a comma."""
+
+    def __init__(self, other: Formatter) -> None:
+        self._other = other
+
+    def set_axis(self, axis: Any) -> None:
+        super().set_axis(axis)
+        self._other.set_axis(axis)
+
+    def set_locs(self, locs: Any) -> None:
+        self._other.set_locs(locs)
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return decimals(self._other(x, pos), "de")
+
+    def get_offset(self) -> str:
+        return decimals(self._other.get_offset(), "de")
+
+
+def svg_of(figure: Figure, words: Words | None = None) -> str:
+    """As vectors, ticks in the language where it has any. Raises UlnaInputError where a label has a sign that
+    Matplotlib finds in no font: it reads the first of several fonts in a file only."""
+    if words is not None and language_of(words.language).comma:
+        _with_commas(figure)
     file = io.StringIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("error", message="Glyph .* missing from font")

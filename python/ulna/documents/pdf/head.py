@@ -98,9 +98,10 @@ def logo(content: Content, words: Words) -> dict[str, Any] | None:
     return {"bytes": list(picture), "format": kind, "alt": issuer(content, words)}
 
 
-def people(content: Content) -> list[list[str]]:
+def people(content: Content, words: Words) -> list[list[str]]:
     """Who signs, the main signer first: name and role; an empty line where nobody is named."""
     if content.laboratory is None:
         return [[" ", " "]]
-    persons = sorted(content.laboratory.file.person, key=lambda each: not each.main_signer)
-    return [[name(each.name), clean(each.role)] for each in persons]
+    found = content.laboratory
+    persons = sorted(found.file.person, key=lambda each: not each.main_signer)
+    return [[name(each.name), clean(found.spoken(each.role, words.language))] for each in persons]

@@ -22,7 +22,6 @@ def _shares(share: float, *keys: str) -> dict[str, float]:
 LAYOUTS: dict[str, Layout] = {
     "parameters": Layout(
         {"number": 0, "parameter": 3, "unit": 0, "status": 1.6, **_shares(0, "nominal", "estimate", "expanded")}
-        | {"ratio": 1.5}
     ),
     "cylindrical": Layout({"probe": 2, **_shares(0, "parameter", "unit"), **_shares(1, "status", "value", "expanded")}),
     "directions": Layout({"combination": 1.3, "cause": 1, "because": 1.6, "remedy": 1.6}),
@@ -34,6 +33,9 @@ LAYOUTS: dict[str, Layout] = {
     "coverage": Layout({"quantity": 1, "readings": 2, **_shares(1, "judged", "inside", "share"), "interval": 1.6}),
     "artefacts": Layout({"artefact": 1.5, "kind": 1, "calibrated": 2, "u": 1.5, "placements": 0, "count": 0}),
     "equipment": Layout({"standard": 3, "serial": 2, "certificate": 2, "certified-by": 3}, size_pt=8.5),
+    "standards": Layout(
+        {"artefact": 1.8, "kind": 1.5, "used-in": 1.2, "calibrated": 2, "u": 0, "certificate": 1.2}, size_pt=7.5
+    ),
     "extras": Layout(
         {"extra": 1.6, "quantity": 1.8, "verdict": 1.2, **_shares(1, "without", "with", "better", "u-better")}
     ),
@@ -48,7 +50,7 @@ LAYOUTS: dict[str, Layout] = {
         size_pt=7.5,
     ),
     "verification": Layout(
-        {"condition": 1, "figure": 2.6, "verdict": 1.5}
+        {"condition": 1.8, "figure": 2.8, "verdict": 1.2}
         | _shares(1, "value-mm", "expanded-mm", "limit-mm", "guard-mm")
         | {"values": 0.9}
     ),

@@ -26,21 +26,21 @@ def before_after(rows: Sequence[QualityRow], words: Words) -> str:
     """RMS of each quantity before and after, all of them known, on a logarithmic axis."""
     figure, axes = axes_of(WIDTH_MM, 16.0 + 9.0 * len(rows))
     drawn.before_after(axes, rows, labels(words))
-    return svg_of(figure)
+    return svg_of(figure, words)
 
 
 def ratios(parameters: Parameters, words: Words) -> str:
     """(estimate - nominal) / u of each fitted parameter."""
     figure, axes = axes_of(WIDTH_MM, 14.0 + 3.9 * len(drawn.rated(parameters)))
     drawn.ratios(axes, parameters, labels(words))
-    return svg_of(figure)
+    return svg_of(figure, words)
 
 
 def lengths(found: Lengths, words: Words) -> tuple[str, list[Text]]:
     """Length errors over lengths; the picture and what its caption must say of what is shown."""
     figure, axes = axes_of(WIDTH_MM, 55.0)
     part = drawn.lengths(axes, found, labels(words))
-    return svg_of(figure), [words.say(part.said)] if part.step > 1 else []
+    return svg_of(figure, words), [words.say(part.said)] if part.step > 1 else []
 
 
 def tested_lengths(found: TestedLengths, words: Words) -> str:
@@ -67,4 +67,4 @@ def tested_lengths(found: TestedLengths, words: Words) -> str:
     axes.set_xlabel(say("axis.length-mm"))
     axes.set_ylabel(say("axis.length-error-mm"))
     figure.legend(loc="outside upper center", ncols=6, fontsize=7)
-    return svg_of(figure)
+    return svg_of(figure, words)

@@ -15,7 +15,7 @@ def histogram(sample: Sample, words: Words) -> str:
     """Bars and the normal curve of the sample's mean and standard deviation."""
     figure, axes = axes_of(HALF_MM, 50.0)
     residuals.histogram(axes, sample, labels(words))
-    return svg_of(figure)
+    return svg_of(figure, words)
 
 
 def quantiles(sample: Sample, words: Words) -> tuple[str, list[Text]]:
@@ -23,7 +23,7 @@ def quantiles(sample: Sample, words: Words) -> tuple[str, list[Text]]:
     figure, axes = axes_of(HALF_MM, 50.0)
     kept, count = residuals.quantiles(axes, sample, labels(words)), len(sample.ordered_mm)
     few = words("shown.quantiles", shown=kept, count=count, tails=residuals.TAILS)
-    return svg_of(figure), [few] if kept < count else []
+    return svg_of(figure, words), [few] if kept < count else []
 
 
 def cloud(found: Cloud, readings: ReadingRows, words: Words) -> tuple[str, list[Text]]:
@@ -33,4 +33,4 @@ def cloud(found: Cloud, readings: ReadingRows, words: Words) -> tuple[str, list[
     said = [words.say(part.said)]
     if beyond:
         said.append(words("shown.beyond", beyond=beyond))
-    return svg_of(figure), said
+    return svg_of(figure, words), said

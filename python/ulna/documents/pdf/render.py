@@ -25,30 +25,36 @@ _NUMBER = (Code(""),)
 """Where the template puts the number of a page in."""
 
 
-def render(content: Content, language: str = "en", fonts: Path | None = None) -> bytes:
+def render(content: Content, language: str = "en", fonts: Path | None = None, annex: bool = True) -> bytes:
     """The PDF (PDF/A-2a, PDF/UA-1). The same content gives the same bytes.
 
-    fonts: a folder with fonts to look at before those of the machine. Raises UlnaInputError where no font has a
+    fonts: a folder with fonts to look at before those of the machine; annex: with what stands behind the certificate,
+    how the fit went and its plots. Raises UlnaInputError where no font has a
     character that the page needs, or the laboratory file has no text in this language.
     """
-    data, chosen = certificate(content, language, fonts)
+    data, chosen = certificate(content, language, fonts, annex)
     return typeset(data, chosen)
 
 
-def certificate(content: Content, language: str, fonts: Path | None = None) -> tuple[dict[str, Any], Chosen]:
+def certificate(
+    content: Content, language: str, fonts: Path | None = None, annex: bool = True
+) -> tuple[dict[str, Any], Chosen]:
     """What the template is given, and the fonts that have all of it."""
     words = Words(language)
     data = _about(content, words)
-    parts = order.parts(content, words)
+    parts = order.parts(content, words, annex)
+    behind = order.annexed(content, words) if annex else []
     # labels of plots are words of the dictionary: all of them, so that fonts are known before they are drawn
     own = [text for key, text in dictionary(language).items() if not key.startswith(_ELSEWHERE)]
-    chosen = choose([*texts_in(data), *texts_in(parts), *own], fonts)
+    chosen = choose([*texts_in(data), *texts_in([*parts, *behind]), *own], fonts)
     data["fonts"] = chosen.order(language)
     data["logo"] = head.logo(content, words)
     to = Setting(content, words)
     with looks([family.regular for family in chosen.more]):
         data["blocks"] = [each for part in parts for each in _set(part, to)]
-    data["blocks"].append({"kind": "signatures", "people": head.people(content)})
+        data["annex"] = [each for part in behind for each in _set(part, to)]
+    if content.issued is None:
+        data["blocks"].append({"kind": "signatures", "people": head.people(content, words)})
     return data, chosen
 
 
@@ -71,12 +77,14 @@ def _about(content: Content, words: Words) -> dict[str, Any]:
         "date": head.date(content),
         "program": program,
         "letterhead": head.letterhead(content, words),
-        "people": head.people(content),
+        "people": head.people(content, words),
         "labels": {
             "number": say("laboratory.identifier") if signed else say("provenance.result"),
-            "draft": say("paper.draft"),
+            "draft": say("paper.draft") if content.issued is None else "",
             "sign": say("paper.sign"),
             "page": page_label(words),
+            "annex": say("paper.annex"),
+            "end": say("paper.end") if signed else say("paper.end-report"),
         },
     }
 

@@ -17,7 +17,7 @@ from ulna.documents.pdf.text import Cell, cell, line
 from ulna.documents.sections.blocks import Block, Drawing, Drawings, Facts, Heading, Listed, Paragraph, Table, Tone
 
 #: tone of a paragraph → its style
-STYLES: dict[Tone, str] = {"plain": "plain", "note": "note", "missing": "missing", "good": "plain", "bad": "bad"}
+STYLES: dict[Tone, str] = {"plain": "plain", "note": "note", "missing": "missing", "good": "good", "bad": "bad"}
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,9 @@ LONGEST = 22
 _LONG_WORD = re.compile(rf"[^\s\u200b\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef]{{{LONGEST + 1},}}")
 _PIECE = 10
 
+#: a number with decimals in our own words; versions and numbers of clauses have more points, or belong to a name
+_DECIMALS = re.compile(r"(?<![\d.])(\d+)\.(\d+)(?![\d]*\.\d)")
+
 Piece = str | dict[str, str]
 """A string, or one with a style: {text, style: "code" or "english"}."""
 Cell = str | list[Piece]
@@ -74,9 +77,14 @@ def _set(text: Text, language: str, style: str | None) -> list[Piece]:
     return found
 
 
+def decimals(text: str, language: str) -> str:
+    """Our own words with the decimal mark of the language."""
+    return _DECIMALS.sub(r"\1,\2", text) if language_of(language).comma else text
+
+
 def _shown(piece: str | Name | Command, language: str) -> str:
     if isinstance(piece, str):
-        return piece
+        return decimals(piece, language)
     if isinstance(piece, Name):
         return name(piece.text)
     before, after = language_of(language).quotes

@@ -1,4 +1,4 @@
-"""The decision rule and what it says on the whole, of each state, or that nothing is said."""
+"""What is said on the whole, of each state, to what it applies and by which rule; or that nothing is said."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Style, Text
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, Tone, own
-from ulna.documents.sections.risk import risks
 from ulna.verification.decision import DecisionRule
 from ulna.verification.lifted import rule_of
 
@@ -17,14 +16,17 @@ TONES: dict[str | None, Tone] = {"pass": "good", "fail": "bad", "undecided": "mi
 
 
 def decision(content: Content, words: Words) -> list[Block]:
-    """Rule, then each state as found and as left by itself."""
+    """Each state as found and as left by itself, then the rule."""
     found = content.verification
     if found is None:
         return [Paragraph(words("decision.none"))]
-    page: list[Block] = [Paragraph(rule(rule_of(found.file.decision), words))]
+    page: list[Block] = []
     for whole in wholes(found.file):
         page += _whole(whole, words)
-    return page + risks(found.file, words)
+    if all(state.state != "as-found" for state in found.file.states):
+        page.append(Paragraph(words("decision.no-as-found"), "note"))
+    page.append(Paragraph(words("decision.applies", standard=found.file.profile.standard)))
+    return [*page, Paragraph(rule(rule_of(found.file.decision), words))]
 
 
 def rule(decided: DecisionRule, words: Words) -> Text:

@@ -21,6 +21,7 @@ def facts(content: Content, words: Words) -> Facts:
         Fact("identifier", words("laboratory.identifier"), [named(made.identifier)]),
         Fact("laboratory", words("laboratory.laboratory"), contact(found, file.laboratory, words)),
         Fact("item", words("laboratory.item"), [*_item(found, file.item, words), _arm(content, words)]),
+        Fact("condition", words("laboratory.condition"), [_condition(found, file.item, words)]),
         Fact("customer", words("laboratory.customer"), contact(found, file.customer, words)),
     ]
     if made.order is not None:
@@ -36,7 +37,9 @@ def facts(content: Content, words: Words) -> Facts:
     if made.replaces is not None:
         replaced = made.replaces
         rows.append(Fact("replaces", words(f"replaces.{replaced.change}"), [named(replaced.identifier)]))
-    rows += [Fact("person", named(person.role), [named(person.name)]) for person in file.person]
+    rows += [
+        Fact("person", named(found.spoken(person.role, words.language)), [named(person.name)]) for person in file.person
+    ]
     return Facts(rows + _methods(found, words) + _remarks(found, words))
 
 
@@ -89,6 +92,13 @@ def _item(found: Laboratory, item: ItemTable, words: Words) -> list[Text]:
         label = [] if each.name is None else [named(found.spoken(each.name, words.language))]
         lines.append(joined([*label, named(each.value)], ": "))
     return lines
+
+
+def _condition(found: Laboratory, item: ItemTable, words: Words) -> Text:
+    """On receipt; it is no small thing where nobody looked."""
+    if item.condition is None:
+        return words("laboratory.not-stated")
+    return named(found.spoken(item.condition, words.language))
 
 
 def _methods(found: Laboratory, words: Words) -> list[Fact]:

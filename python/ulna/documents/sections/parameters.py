@@ -12,7 +12,7 @@ from ulna.documents.content.content import Content
 from ulna.documents.content.parameters import ParameterRow
 from ulna.documents.languages.text import NONE, Text, joined, named, number, styled
 from ulna.documents.languages.words import Words
-from ulna.documents.sections.blocks import Block, Heading, Paragraph, own, table
+from ulna.documents.sections.blocks import Block, Paragraph, own, table
 from ulna.documents.sections.scatter import no_uncertainty
 from ulna.ground.digits import degrees_of_freedom, rounded, uncertainty
 
@@ -31,7 +31,7 @@ def parameters(content: Content, words: Words) -> list[Block]:
         about = words("parameters.note", k=own(f"{known.k:.2f}"), p=own(f"{100 * known.p:g}"))
         said = [about, words("parameters.rounding"), u_comes_from(content, words), words("parameters.only")]
         page.append(Paragraph(joined(said, " "), "note"))
-    return page + _cylindrical(content, words)
+    return page
 
 
 def u_comes_from(content: Content, words: Words) -> Text:
@@ -63,13 +63,13 @@ def _status(row: ParameterRow, words: Words) -> Text:
     return joined([status, styled(("(", *words(f"cause.{row.cause}"), ")"), "aside")], " ")
 
 
-def _cylindrical(content: Content, words: Words) -> list[Block]:
+def cylindrical(content: Content, words: Words) -> list[Block]:
+    """The tips once more, by angle, radius and height."""
     rows = [row for view in content.parameters.probes for row in _probe(view, content.parameters.k, words)]
     if not rows:
         return []
-    title = words("parameters.cylindrical")
     columns = ("probe", "parameter", "unit", "status", "value", "u", "expanded")
-    return [Heading(title), table("cylindrical", title, words, columns, rows, left=4)]
+    return [table("cylindrical", words("parameters.cylindrical"), words, columns, rows, left=4)]
 
 
 def _probe(view: ProbeView, k: float, words: Words) -> list[list[Text]]:

@@ -21,6 +21,8 @@ def facts(content: Content, words: Words) -> Facts:
         "fit": [(Code(json.dumps(made.options, ensure_ascii=False)),)],
         "warnings": [named(each) for each in made.warnings],
     }
+    if content.issued is not None and content.issued.audit_head is not None:
+        found["audit-head"] = [(Code(content.issued.audit_head),)]
     return Facts([Fact(key, words(f"provenance.{key}"), lines) for key, lines in found.items() if lines])
 
 

@@ -8,6 +8,7 @@ from ulna.documents.laboratory.tables import EquipmentTable
 from ulna.documents.languages.text import NONE, Text, joined, named
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Paragraph, table
+from ulna.documents.sections.standards import standards
 
 COLUMNS = ("standard", "serial", "certificate", "certified-by")
 
@@ -16,16 +17,17 @@ def traceability(content: Content, words: Words) -> list[Block]:
     """Only the laboratory can state it."""
     found = content.laboratory
     if found is None:
-        return [Paragraph(words("traceability.not-stated"), "bad")]
+        return [Paragraph(words("traceability.not-stated"), "bad"), *standards(content, words)]
     statement = found.file.traceability
     if statement is None:
         page: list[Block] = [Paragraph(words("traceability.not-stated"), "bad")]
     else:
         page = [Paragraph(named(found.spoken(statement.statement, words.language)))]
     if not found.file.equipment:
-        return [*page, Paragraph(words("traceability.no-equipment"), "missing")]
+        return [*page, Paragraph(words("traceability.no-equipment"), "missing"), *standards(content, words)]
     rows = [_standard(found, each, words) for each in found.file.equipment]
-    return [*page, table("equipment", words("section.traceability"), words, COLUMNS, rows, left=4)]
+    equipment = table("equipment", words("section.traceability"), words, COLUMNS, rows, left=4)
+    return [*page, equipment, *standards(content, words)]
 
 
 def _standard(found: Laboratory, each: EquipmentTable, words: Words) -> list[Text]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ulna.documents.content.content import Content
 from ulna.documents.languages.text import Text, joined, named
 from ulna.documents.languages.words import Words
-from ulna.documents.sections.blocks import Block, Heading, Listed, Paragraph, own
+from ulna.documents.sections.blocks import Block, Paragraph, own
 from ulna.documents.sections.conditions import noise
 from ulna.documents.sections.parameters import u_comes_from
 from ulna.documents.sections.scatter import no_uncertainty, scatter
@@ -24,11 +24,14 @@ def uncertainty_statement(content: Content, words: Words) -> list[Block]:
     manner = words("uncertainty.manner", k=own(f"{known.k:.2f}"), p=own(f"{100 * known.p:g}"))
     return [
         Paragraph(joined([manner, u_comes_from(content, words)], " ")),
-        Heading(words("uncertainty.included")),
-        Listed(_within(content, words)),
-        Heading(words("uncertainty.excluded")),
-        Listed(_outside(content, words)),
+        Paragraph(_all_of("included", _within(content, words), words)),
+        Paragraph(_all_of("excluded", _outside(content, words), words)),
     ]
+
+
+def _all_of(key: str, said: list[Text], words: Words) -> Text:
+    """Sentences behind what they are of."""
+    return joined([(*words(f"uncertainty.{key}"), ":"), *said], " ")
 
 
 def _within(content: Content, words: Words) -> list[Text]:

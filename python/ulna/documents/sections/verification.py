@@ -10,7 +10,8 @@ from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table
 from ulna.documents.sections.decision import STYLES, verdict
 from ulna.documents.sections.risk import share
-from ulna.ground.digits import figure_mm, rounded, uncertainty
+from ulna.documents.sections.verbatim import english, formula, left_out, manner
+from ulna.ground.digits import figure_mm, fixed, plain_uncertainty, rounded, uncertainty
 from ulna.verification.lifted import Lifted
 from ulna.verification.result_file import FigureTable, StateTable, TestedTable, ValueTable
 
@@ -21,7 +22,7 @@ SINGLES = ("condition", "figure", "where", "verdict", "calibrated-mm", "value-mm
 def verification(found: Verification, words: Words) -> list[Block]:
     """What profile, figures with their verdicts, and where the test departs from its profile."""
     file = found.file
-    page: list[Block] = [Paragraph(styled(named(file.profile.statement), "english"))]
+    page: list[Block] = [Paragraph(manner(file.profile, words))]
     page += [Paragraph(words.say(each), "missing") for each in found.remarks]
     rows = [_figure(state, test, figure, words) for state, test, figure in _figures(found)]
     note = words("verification.note", k=own(f"{file.decision.k:g}"), p=own(f"{100 * file.decision.p:g}"))
@@ -64,12 +65,12 @@ def _lifted(found: Verification, words: Words) -> list[Block]:
 def formulas(found: Verification, words: Words) -> list[Block]:
     """Each figure's formula, and what no uncertainty of a test value holds."""
     figures = [figure for *_, figure in _figures(found)]
-    by_name = {figure.name: figure.formula for figure in figures}
-    facts = [Fact(key, named(key), [styled(named(each), "english")]) for key, each in by_name.items()]
+    by_name = {figure.name: formula(figure, words) for figure in figures}
+    facts = [Fact(key, named(key), [each]) for key, each in by_name.items()]
     page: list[Block] = [Heading(words("verification.formulas")), Facts(facts)]
-    left_out = list(dict.fromkeys(each for figure in figures for each in figure.left_out))
-    if left_out:
-        page += [Paragraph(words("verification.left-out")), _english(left_out)]
+    without = list(dict.fromkeys(each for figure in figures for each in figure.left_out))
+    if without:
+        page += [Paragraph(words("verification.left-out")), Listed([left_out(each, words) for each in without])]
     return page
 
 
@@ -98,7 +99,8 @@ def _figure(state: StateTable, test: TestedTable, figure: FigureTable, words: Wo
         why = ("(", *styled(named(figure.why), "english"), ")")
         said = joined([said, styled(why, "aside")], " ")
     value, expanded = rounded(figure.value, figure.expanded, "mm")
-    numbers = [value, uncertainty(figure.u), expanded, _mm(figure.limit), uncertainty(figure.guard)]
+    limit = "–" if figure.limit is None else fixed(figure.limit, max(len(value.partition(".")[2]), 4))
+    numbers = [value, uncertainty(figure.u), expanded, limit, plain_uncertainty(figure.guard, "mm")]
     return [
         words(f"state.{state.state}"),
         joined([named(figure.name), styled(named(test.name), "aside")], " "),
@@ -127,4 +129,4 @@ def _mm(value: float | None) -> str:
 
 
 def _english(texts: list[str]) -> Listed:
-    return Listed([styled(named(each), "english") for each in texts])
+    return Listed([english(each) for each in texts])

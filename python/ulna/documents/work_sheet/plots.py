@@ -29,5 +29,5 @@ def plots(plan: Plan, words: Words) -> list[blocks.Block]:
         for seen, caption in (((0, 1), above), ((0, 2), side)):
             figure, axes = axes_of(WIDE_MM, HIGH_MM)
             draw_stands(axes, stands, group, seen, base)
-            found.append(blocks.plot(svg_of(figure), caption))
+            found.append(blocks.plot(svg_of(figure, words), caption))
     return [blocks.plots(found[:1], 2), *(blocks.plots(found[k : k + 2], 2) for k in range(1, len(found), 2))]
