@@ -24,6 +24,7 @@ class _Asked:
     evaluation: Path | None
     cross_validation: Path | None
     fonts: Path | None
+    look: bool
 
 
 def certificate(
@@ -39,13 +40,15 @@ def certificate(
     evaluation: str | Path | None = None,
     cross_validation: str | Path | None = None,
     fonts: str | Path | None = None,
+    look: bool = True,
 ) -> bytes:
     """A certificate of a result.json (or its folder) and a laboratory file, the same bytes for the same files.
 
     form: "pdf", or "dcc" for PTB's XML, which has the languages of the laboratory file. issued: that it was issued,
     by whom; without it the certificate says on every page that it is a draft. verification: files that `ulna verify`
     wrote, of the same arm. Of the PDF alone: language; annex: with how the fit went, plots and outliers behind the
-    certificate; study, evaluation, cross_validation, fonts: as `ulna report` takes them.
+    certificate; study, evaluation, cross_validation, fonts: as `ulna report` takes
+    them; look: for a study that nobody named, by its path in the result.
 
     Raises UlnaInputError for files that cannot be used, and for a calibration that did not converge.
     """
@@ -55,9 +58,21 @@ def certificate(
 
     if form not in FORMS:
         raise UlnaInputError(f"form {form!r}: expected one of {', '.join(FORMS)}. Choose one of these.")
-    more = [path(each) for each in (study, evaluation, cross_validation, fonts)]
-    tests = [Path(each) for each in verification]
-    return FORMS[form](_Asked(Path(result), Path(laboratory), tests, issued, language, annex, *more))
+    return FORMS[form](
+        _Asked(
+            Path(result),
+            Path(laboratory),
+            [Path(each) for each in verification],
+            issued,
+            language,
+            annex,
+            path(study),
+            path(evaluation),
+            path(cross_validation),
+            path(fonts),
+            look,
+        )
+    )
 
 
 def _pdf(asked: _Asked) -> bytes:
@@ -75,6 +90,7 @@ def _pdf(asked: _Asked) -> bytes:
         asked.laboratory,
         asked.verification,
         issued=asked.issued,
+        look=asked.look,
     )
     return render(content, asked.language, asked.fonts, asked.annex)
 

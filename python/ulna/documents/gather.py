@@ -52,6 +52,7 @@ def gather(
     verified: Path | Sequence[Path] | None = None,
     progress: Progress | None = None,
     issued: Issued | None = None,
+    look: bool = True,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
@@ -59,7 +60,8 @@ def gather(
     it and its path to it no longer leads there. cross_validation, evaluation: what those commands wrote, for readings
     held out. laboratory: who calibrated for whom, with what. verified: what `ulna verify` wrote, as found and as left
     in one file or in two. progress is called with (stage, done, total). issued: that the certificate was issued, which
-    takes a laboratory file and a calibration that converged.
+    takes a laboratory file and a calibration that converged. look: for a study that nobody named, by its path in the
+    result.
     """
 
     def at(done: int) -> None:
@@ -72,7 +74,7 @@ def gather(
     named = _laboratory(laboratory, calibration, issued)
     at(1)
     tested = [take(VERIFICATION, path, calibration) for path in _paths(verified)]
-    source = find_study(calibration, study)
+    source = find_study(calibration, study, look)
     at(2)
     left_out = _taken(CROSS_VALIDATION, cross_validation, calibration)
     judged = _taken(EVALUATION, evaluation, calibration)

@@ -13,6 +13,7 @@ from ulna.comparison.compare import Comparison
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.shown import About, Shown, Table
 from ulna.records import asked, compared, copies, filing, rebuild, registering, standing, verify
+from ulna.records.advising import Advice, Wanted, advise, decide
 from ulna.records.bench import Bench
 from ulna.records.copies import Copied
 from ulna.records.due import Due, due, today
@@ -21,9 +22,11 @@ from ulna.records.filed.kind import in_utc
 from ulna.records.filing import Filed, Filing
 from ulna.records.history import Happening, Point, calibrations, figure_names, figures, history
 from ulna.records.impact import Impact, impact
+from ulna.records.issuing import Asked, IssuedCertificate, issue
 from ulna.records.migrate import migrate
 from ulna.records.registering import Value
 from ulna.records.tables import EQUIPMENT
+from ulna.records.trend import Trend, trend
 
 Path_ = str | os.PathLike[str]
 
@@ -89,6 +92,19 @@ class Records(Shown):
         with self.bench.reading() as connection:
             return impact(connection, name, *times)
 
+    def trend(self, arm: str, figure: str, **more: Any) -> Trend:
+        """A figure over time: drift, when it meets its limit, whether it is in control. more: state, artefact, since,
+        limit, guard, baseline (see `ulna.records.trend`)."""
+        if more.get("since"):
+            more["since"] = in_utc(more["since"], "since")[:10]
+        with self.bench.reading() as connection:
+            return trend(connection, arm, figure, **more)
+
+    def advise(self, arm: str, method: str, **more: Any) -> Advice:
+        """When an arm should come back. method: staircase, drift, a3; more: figure, limit, guard, target."""
+        with self.bench.reading() as connection:
+            return advise(connection, Wanted(arm, **more), method)
+
     def compare(self, arm: str, last: int = 2, probe: str | None = None, shared_u: float = 0.0) -> Comparison:
         """The last calibrations of an arm, each with the next."""
         return compared.compare_last(self.bench, arm, last, probe, shared_u)
@@ -137,6 +153,15 @@ class Records(Shown):
         it rests; with_it: what belongs to it, by role."""
         beside = {role: Path(path) for role, path in (with_it or {}).items()}
         return filing.file_all(self.bench, [Filing(Path(path), arm, at, artefacts, beside) for path in paths])
+
+    def interval(self, name: str, days: float, method: str | None = None, why: str | None = None) -> Entry:
+        """When equipment must come back, as somebody decided: days from its last calibration or test."""
+        return decide(self.bench, name, days, method, why)
+
+    def issue(self, result: str, laboratory: Path_, **more: Any) -> IssuedCertificate:
+        """A certificate of a filed calibration, by its SHA-256 or the beginning of it. more: verification, number, form
+        ("pdf", "dcc"), language, approved_by, supersedes, reason."""
+        return issue(self.bench, Asked(result, Path(laboratory), **more))
 
     def withdraw(self, subject: str, reason: str) -> Entry:
         """A filed file by its SHA-256 or the beginning of it, or a certificate by its number: it is kept, and counts no

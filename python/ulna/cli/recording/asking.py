@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ulna.cli.options import All, Json
-from ulna.cli.recording.options import Arm, Name, Where, opened
+from ulna.cli.recording.options import Arm, By, Name, Where, opened
 from ulna.cli.running import guard
 
 Since = Annotated[str | None, typer.Option("--since", metavar="DAY", help="When it was last good.")]
@@ -100,4 +100,97 @@ def impact(name: Name, since: Since = None, until: Until = None, where: Where = 
         output.print_renderable(*impact_report(found))
 
 
-COMMANDS = {"history": history, "compare": compare, "due": due, "impact": impact}
+@guard
+def trend(
+    arm: Arm,
+    figure: Annotated[
+        str | None,
+        typer.Argument(metavar="FIGURE", help="As a result or a test names it; without: which there are."),
+    ] = None,
+    state: Annotated[str | None, typer.Option("--state", metavar="STATE", help="as-found, after, …")] = None,
+    artefact: Annotated[
+        str | None, typer.Option("--artefact", metavar="NAME", help="Of which test or artefact.")
+    ] = None,
+    since: Annotated[str | None, typer.Option("--since", metavar="DAY", help="Figures from that day on.")] = None,
+    limit: Annotated[
+        float | None, typer.Option("--limit", metavar="MM", help="Of its size; else as the last test states it.")
+    ] = None,
+    guard_band: Annotated[float, typer.Option("--guard", metavar="MM", help="Taken off the limit.")] = 0.0,
+    baseline: Annotated[
+        int | None,
+        typer.Option("--baseline", metavar="N", help="The first N figures make the chart's limits; else half, to 20."),
+    ] = None,
+    everything: All = False,
+    where: Where = None,
+    as_json: Json = False,
+) -> None:
+    """Say how a figure of an arm goes over time: whether it drifts, when it will meet its limit, whether it is in
+    control.
+
+    A straight line with its 95 % prediction, and charts against the first figures: single ones, weighted averages,
+    runs. What too few figures do not tell is said to be so. Exit code 1 where it is out of control.
+
+    Example: [bold]ulna record trend P7 length_error_rms_mm --state as-found[/bold]
+    """
+    from ulna.cli import output
+    from ulna.cli.printed.trends import trend_document, trend_report
+
+    records = opened(where)
+    if figure is None:
+        output.print_names("figure", {f"{name} ({of})": "" for name, of in records.figure_names(arm)})
+        return
+    found = records.trend(
+        arm, figure, state=state, artefact=artefact, since=since, limit=limit, guard=guard_band, baseline=baseline
+    )
+    if as_json:
+        output.print_json(trend_document(found))
+    else:
+        output.print_renderable(*trend_report(found, everything))
+    raise typer.Exit(int(found.chart.in_control is False))
+
+
+@guard
+def interval(
+    name: Name,
+    method: Annotated[
+        str | None,
+        typer.Option("--method", metavar="METHOD", help="staircase, drift or a3; else all that can be said."),
+    ] = None,
+    figure: Annotated[str | None, typer.Option("--figure", metavar="NAME", help="Of drift: which figure.")] = None,
+    limit: Annotated[float | None, typer.Option("--limit", metavar="MM", help="Of drift: its limit.")] = None,
+    guard_band: Annotated[float, typer.Option("--guard", metavar="MM", help="Of drift: taken off the limit.")] = 0.0,
+    target: Annotated[
+        float, typer.Option("--target", metavar="SHARE", help="Of a3: what share is to be in tolerance.")
+    ] = 0.95,
+    days: Annotated[
+        float | None,
+        typer.Option("--set", metavar="DAYS", help="Decide: so many days from the last calibration or test."),
+    ] = None,
+    why: Annotated[str | None, typer.Option("--why", metavar="TEXT", help="Of the decision; it is kept.")] = None,
+    where: Where = None,
+    by: By = None,
+    as_json: Json = False,
+) -> None:
+    """Advise when an arm should come back, or decide it with --set. Advice says on how much it rests, or that it is too
+    little.
+
+    Example: [bold]ulna record interval P7 --method staircase[/bold]
+    """
+    from ulna.cli import output
+    from ulna.cli.printed.trends import advice_report
+    from ulna.records.advising import METHODS
+
+    records = opened(where, by)
+    if days is not None:
+        entry = records.interval(name, days, method, why)
+        output.say(f"{entry.subject}: due {entry.stated['due_at'][:10]}. Entry {entry.seq}.")
+        return
+    wanted = [method] if method is not None else [each for each in METHODS if each != "drift" or figure is not None]
+    found = [records.advise(name, each, figure=figure, limit=limit, guard=guard_band, target=target) for each in wanted]
+    if as_json:
+        output.print_json({"name": name, "advice": [asdict(each) for each in found]})
+    else:
+        output.print_renderable(*advice_report(found))
+
+
+COMMANDS = {"history": history, "trend": trend, "interval": interval, "compare": compare, "due": due, "impact": impact}

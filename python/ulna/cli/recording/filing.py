@@ -134,4 +134,66 @@ def withdraw(
     output.say(f"{entry.subject}: withdrawn. Entry {entry.seq}.")
 
 
-COMMANDS = {"add": add, "list": list_, "show": show, "withdraw": withdraw}
+@guard
+def issue(
+    result: Annotated[
+        str,
+        typer.Argument(metavar="RESULT", help="A filed calibration: its SHA-256's first letters.", show_default=False),
+    ],
+    laboratory: Annotated[Path, typer.Argument(metavar="LAB", help="The laboratory file (TOML).", show_default=False)],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write it there as well: .pdf, .xml.")
+    ] = None,
+    verification: Annotated[
+        list[str] | None, typer.Option("--verification", metavar="FILE", help="A filed test; may be repeated.")
+    ] = None,
+    number: Annotated[
+        str | None, typer.Option("--number", metavar="TEXT", help="Else the next by the record's pattern.")
+    ] = None,
+    language: Annotated[str, typer.Option("--language", metavar="CODE", help="en, de or zh.")] = "en",
+    approved_by: Annotated[
+        str | None, typer.Option("--approved-by", metavar="NAME", help="Who authorises it, where four eyes are needed.")
+    ] = None,
+    supersedes: Annotated[
+        str | None, typer.Option("--supersedes", metavar="NUMBER", help="A certificate that it takes the place of.")
+    ] = None,
+    reason: Annotated[str | None, typer.Option("--reason", metavar="TEXT", help="Why.")] = None,
+    where: Where = None,
+    by: By = None,
+    force: Force = False,
+    as_json: Json = False,
+) -> None:
+    """Issue a certificate of a filed calibration: numbered, kept, with the head of the record on it, no draft any more.
+
+    Example: [bold]ulna record issue 3f0c88a1 lab.toml -o certificate.pdf[/bold]
+    """
+    from ulna.cli import output
+    from ulna.cli.endings import by_ending
+    from ulna.cli.options import one_of
+    from ulna.documents.languages.languages import LANGUAGES
+    from ulna.formats.output import check_output, write_file
+
+    one_of("--language", language, tuple(LANGUAGES))
+    form = "pdf"
+    if out is not None:
+        form = (by_ending(out, {".pdf": "pdf", ".xml": "dcc"}, [], folder=False) or ["pdf"])[0]
+        check_output(out.parent, [out.name], force)
+    made = opened(where, by).issue(
+        result,
+        laboratory,
+        verification=verification or [],
+        number=number,
+        form=form,
+        language=language,
+        approved_by=approved_by,
+        supersedes=supersedes,
+        reason=reason,
+    )
+    if out is not None:
+        write_file(out, made.content, force)
+    if as_json:
+        output.print_json({"number": made.number, "arm": made.arm, "sha256": made.sha256, "head": made.head})
+    output.say(f"Certificate {made.number} of {made.arm}: issued." + (f" Written: {out}" if out is not None else ""))
+
+
+COMMANDS = {"add": add, "list": list_, "show": show, "issue": issue, "withdraw": withdraw}

@@ -59,10 +59,10 @@ def _remarks(study: Study, path: Path, calibration: Calibration) -> list[Said]:
 STUDY = Source("study", "ulna-study", _read, _remarks)
 
 
-def find_study(calibration: Calibration, given: StudyLike | None) -> FoundStudy:
+def find_study(calibration: Calibration, given: StudyLike | None, look: bool = True) -> FoundStudy:
     """given: the study that the user named, or has in memory. Without it that which the result knows, or the path in it
-    is looked for, as it stands and beside the result; a study that has changed since is told and not used. Raises
-    UlnaInputError."""
+    is looked for, as it stands and beside the result, unless `look` is False; a study that has changed since is told
+    and not used. Raises UlnaInputError."""
     made = calibration.result.provenance
     own = calibration.result.study if given is None else given
     if own is not None and not isinstance(own, str | os.PathLike):
@@ -77,7 +77,8 @@ def find_study(calibration: Calibration, given: StudyLike | None) -> FoundStudy:
     if name is None:
         return FoundStudy(None, _rows(made, lambda _: "not-compared"), Said("study.in-memory"))
     # the paths of a result are as seen from where it was made; the root in which the study is found is that place
-    root = next((root for root in (Path(), calibration.file.path.parent) if (root / name).is_file()), None)
+    roots = (Path(), calibration.file.path.parent) if look else ()
+    root = next((root for root in roots if (root / name).is_file()), None)
     if root is None:
         return FoundStudy(None, _rows(made, lambda _: "not-compared"), Said("study.absent", {"study": name}))
     files = _rows(made, lambda file: _state(root / str(file["path"]), str(file["sha256"])))

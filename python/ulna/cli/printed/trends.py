@@ -1,0 +1,121 @@
+"""What `ulna record trend` and `ulna record interval` print."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from ulna.cli.printed.tables import table
+from ulna.control.drift import Drift
+from ulna.ground.digits import figure_mm
+from ulna.records.advising import Advice
+from ulna.records.trend import Chart, Trend
+
+_LATEST = 12
+
+
+def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
+    """The figures, the line, the limit, the chart."""
+    points = found.points if everything else found.points[-_LATEST:]
+    first = len(found.points) - len(points)
+    outside = {found.chart.baseline + int(k) for k in found.chart.limits.outside}
+    rows = [
+        (
+            each.at[:10],
+            each.source,
+            each.verdict or "",
+            "outside" if k in outside else "",
+            figure_mm(each.value),
+            "-" if each.u is None else figure_mm(each.u),
+        )
+        for k, each in enumerate(points, start=first)
+    ]
+    heads = ("day", "of", "verdict", "chart", f"{found.points[0].unit}", "u")
+    parts: list[RenderableType] = [table(f"{found.figure} of {found.arm}", heads, rows, left=4)]
+    if first:
+        parts.append(Text(f"{first} earlier: --all."))
+    parts += ["", Text(f"Drift: {found.drift.said}")]
+    if found.until is not None:
+        parts.append(Text(f"Limit: {found.until.reason}"))
+    parts.append(Text(f"Chart: {_chart(found.chart)}"))
+    if found.breaks:
+        parts.append(Text(f"Meanwhile: {'; '.join(found.breaks)}. With --since DAY only what came after."))
+    return parts
+
+
+def _chart(chart: Chart) -> str:
+    limits = chart.limits
+    if limits.lower is None or limits.upper is None:
+        return f"{limits.basis.said}; nothing is said of control."
+    said = f"limits {figure_mm(limits.lower)} to {figure_mm(limits.upper)}, of the first {chart.baseline}"
+    if chart.in_control:
+        return f"{said}: in control."
+    found = []
+    if len(limits.outside):
+        found.append(f"{len(limits.outside)} outside")
+    if len(chart.averages.outside):
+        found.append(f"{len(chart.averages.outside)} weighted averages outside")
+    found += [run.words for run in (chart.runs.found if chart.runs else ())]
+    return f"{said}: out of control ({'; '.join(found)})."
+
+
+def trend_document(found: Trend) -> dict[str, Any]:
+    """The machine form."""
+    until = found.until
+    return {
+        "format": "ulna-trend/1",
+        "arm": found.arm,
+        "figure": found.figure,
+        "points": [asdict(each) for each in found.points],
+        "drift": _drift(found.drift),
+        "until": until and {"days": until.interval_days, "meets_days": until.meets_days, "reason": until.reason},
+        "chart": _chart_document(found.chart),
+        "breaks": found.breaks,
+    }
+
+
+def _drift(found: Drift) -> dict[str, Any]:
+    basis, line = found.basis, found.line
+    return {
+        "method": basis.method,
+        "n": basis.n,
+        "span_days": basis.span_days,
+        "too_few": basis.too_few,
+        "per_day": None if line is None else line.slope,
+        "u_per_day": None if line is None else line.u_slope,
+        "p_value": found.p_value,
+        "drifts": found.drifts,
+        "birge": found.birge,
+    }
+
+
+def _chart_document(chart: Chart) -> dict[str, Any]:
+    return {
+        "baseline": chart.baseline,
+        "centre": chart.limits.centre,
+        "lower": chart.limits.lower,
+        "upper": chart.limits.upper,
+        "outside": [chart.baseline + int(k) for k in chart.limits.outside],
+        "averages_outside": [chart.baseline + int(k) for k in chart.averages.outside],
+        "runs": [asdict(run) for run in (chart.runs.found if chart.runs else ())],
+        "in_control": chart.in_control,
+    }
+
+
+def advice_report(found: Sequence[Advice]) -> list[RenderableType]:
+    """One method a row; why below."""
+    rows = [
+        (
+            each.method,
+            str(each.n),
+            "-" if each.now_days is None else f"{each.now_days:.0f}",
+            "too few" if each.days is None else f"{each.days:.0f}",
+        )
+        for each in found
+    ]
+    made = table("", ("method", "rests on", "now / days", "advised / days"), rows)
+    return [made, "", *(Text(f"{each.method}: {each.reason}") for each in found)]
