@@ -13,6 +13,7 @@ from .calibration.cross_validate import CrossValidation, cross_validate
 from .calibration.evaluate import Evaluation, evaluate
 from .calibration.identify import identify
 from .calibration.result import Result
+from .checking.check import Check, check
 from .comparison.compare import Comparison, compare
 from .ground.errors import InputWarning, UlnaInputError
 from .measuring.measure import measure
@@ -35,6 +36,7 @@ __all__ = [
     "Artefact",
     "Assessment",
     "Batch",
+    "Check",
     "Comparison",
     "CrossValidation",
     "Effects",
@@ -62,6 +64,7 @@ __all__ = [
     "__version__",
     "batch",
     "calibrate",
+    "check",
     "compare",
     "cross_validate",
     "evaluate",
