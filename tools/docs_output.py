@@ -13,6 +13,7 @@ import textwrap
 from pathlib import Path
 
 from docs_artefacts import artefact_table
+from docs_check import check_outputs
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
@@ -148,6 +149,7 @@ def command_outputs(pictures: bool = False) -> dict[str, str]:
             raise RuntimeError(f"ulna {' '.join(table)} exited with {done.returncode}:\n{done.stderr}")
         found["dh-table.txt"] = tidy((folder / "out" / "table.csv").read_text(encoding="utf-8"))
         found |= certificate_outputs(folder)
+        found |= {name: tidy(text) for name, text in check_outputs(folder).items()}
         found["calibrate-short.txt"] = first_lines(found["calibrate.txt"], 20)
         for made, shown in PICTURES.items() if pictures else ():
             shown.parent.mkdir(parents=True, exist_ok=True)

@@ -22,6 +22,8 @@ from pydantic_core import core_schema
 
 from ulna.arm.tables import ArmFile
 from ulna.calibration.result_file import CrossValidationFile, EvaluationFile, ResultFile
+from ulna.checking.result_file import CheckFile
+from ulna.checking.tables import ProtocolFile
 from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.planning.file import PlanFile
 from ulna.planning.result_file import PlanResultFile
@@ -47,6 +49,8 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-profile-1": ProfileFile,
     "ulna-verify-1": VerifyFile,
     "ulna-verification-1": VerificationFile,
+    "ulna-protocol-1": ProtocolFile,
+    "ulna-check-1": CheckFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

@@ -26,6 +26,8 @@ PROBES = {
     "straight": ulna.Probe.from_cylindrical(-1.8676, 0.0965, 238.5596),
 }
 TRUTH = ulna.Arm("Table 4", ulna.Arm.load(HERE / "platinum-straight.toml").joints, PROBES)
+#: the same after a knock, as checks before work find it
+KNOCKED = ulna.Arm.load(HERE / "knocked.toml")
 LIMITS_RAD = np.tile([-TRAVEL_RAD, TRAVEL_RAD], (TRUTH.n, 1))
 
 
@@ -74,6 +76,33 @@ def seat(poses: int, probe: str, rng: np.random.Generator) -> pl.DataFrame:
     return table(q_rad)
 
 
+def morning(arm: ulna.Arm, rng: np.random.Generator) -> pl.DataFrame:
+    """A check of three minutes: a cone touched eight times, elbow and wrist moved, and a bar in three places."""
+    ends = {
+        "front": ([500.0, -200.0, 150.0], [0.0, 1.0, 0.0]),
+        "left": ([150.0, 550.0, 50.0], [1.0, 0.0, 0.0]),
+        "upright": ([600.0, 150.0, -100.0], [0.0, 0.0, 1.0]),
+    }
+    points = [np.array([450.0, 250.0, 100.0])] * 8
+    labels = [("seat", "", "")] * 8
+    for place, (first, direction) in ends.items():
+        points += [np.array(first), np.array(first) + BAR_MM * np.array(direction)]
+        labels += [("bar", place, "A"), ("bar", place, "B")]
+    beside_mm = np.stack(points) + rng.normal(0.0, SEAT_NOISE_MM, (len(points), 3))
+    q_rad, reached = arm.core.pose_for_points(beside_mm, LIMITS_RAD, int(rng.integers(2**31)), arm.probe_index("bent"))
+    assert reached.all(), "a place of the check is out of reach"
+    test, position, feature = map(list, zip(*labels, strict=True))
+    read = q_rad + rng.normal(0.0, ENCODER_NOISE_RAD, q_rad.shape)
+    return table(read, test=test, position=position, feature=feature)
+
+
+def mornings() -> dict[str, pl.DataFrame]:
+    """File name → readings of eight checks; before the last one the arm was knocked."""
+    rng = np.random.default_rng(20261130)
+    days = [2, 4, 6, 9, 11, 13, 16, 18]
+    return {f"morning-11-{day:02d}.csv": morning(KNOCKED if day == days[-1] else TRUTH, rng) for day in days}
+
+
 def generate() -> dict[str, pl.DataFrame]:
     """File name → readings."""
     rng = np.random.default_rng(20110541)
@@ -83,6 +112,7 @@ def generate() -> dict[str, pl.DataFrame]:
         "length.csv": check.head(2),
         "seat.csv": seat(32, "straight", rng),
         "check-straight.csv": bars(10, "straight", rng),
+        **mornings(),
     }
 
 

@@ -280,6 +280,30 @@ DOORS: dict[str, Door] = {
             short=12,
         ),
         Door(
+            "protocol",
+            TomlDoor(
+                [
+                    "fossils/protocol-1.toml",
+                ],
+                [
+                    "check {file} fossils/protocol-1.csv",
+                    "check {file} fossils/protocol-1.csv --date 2030-01-01 --history fossils/check-1.json --json",
+                ],
+            ),
+        ),
+        Door(
+            "check",
+            JsonDoor(
+                [
+                    "fossils/check-1.json",
+                ],
+                [
+                    "check fossils/protocol-1.toml fossils/protocol-1.csv --date 2030-01-01 --history {file}",
+                ],
+            ),
+            short=12,
+        ),
+        Door(
             "plan result",
             JsonDoor(
                 [

@@ -23,6 +23,7 @@ provided.provide(
         "arm of a URDF": "ulna.exchange.in_memory:arm_of_urdf",
         "arm of a DH table": "ulna.exchange.in_memory:arm_of_dh",
         "columns of a frame": "ulna.proposals.recognised:recognised",
+        "artefact of a record": "ulna.records.lending:lent",
         "plots of a result": "ulna.documents.plotted:ResultPlots",
     }
 )

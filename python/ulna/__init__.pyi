@@ -13,6 +13,7 @@ from .calibration.cross_validate import CrossValidation, cross_validate
 from .calibration.evaluate import Evaluation, evaluate
 from .calibration.identify import identify
 from .calibration.result import Result
+from .checking.check import Check, check
 from .comparison.compare import Comparison, compare
 from .documents.certificate import certificate
 from .documents.laboratory.issued import Issued
@@ -37,6 +38,7 @@ __all__ = [
     "Artefact",
     "Assessment",
     "Batch",
+    "Check",
     "Comparison",
     "CrossValidation",
     "Effects",
@@ -55,6 +57,7 @@ __all__ = [
     "Prior",
     "Probe",
     "Readings",
+    "Records",
     "Result",
     "Simulated",
     "Simulation",
@@ -66,6 +69,7 @@ __all__ = [
     "batch",
     "calibrate",
     "certificate",
+    "check",
     "compare",
     "cross_validate",
     "evaluate",

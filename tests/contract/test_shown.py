@@ -79,6 +79,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[type, Any]:
         ulna.plan(PLATINUM / "platinum.toml", fewer(folder, "plan.toml", SMALL_PLAN)),
         simulated,
         ulna.verify(folder / "test" / "plan.toml", result),
+        ulna.check(PLATINUM / "protocol.toml", PLATINUM / "morning-11-02.csv"),
         ulna.batch(folder / "studies", folder / "out"),
     ]
     return {type(each): each for each in found}

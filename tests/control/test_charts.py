@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ulna.control.basis import basis
+from ulna.control.basis import basis, normal_scores
 from ulna.control.ewma import against, ewma
 from ulna.control.shewhart import BEYOND_3, MANY, shewhart
 from ulna.ground.errors import UlnaInputError
@@ -102,3 +102,25 @@ def test_too_few_are_said_and_have_no_limits() -> None:
 def test_what_are_no_figures_is_said(wrong, said: str) -> None:
     with pytest.raises(UlnaInputError, match=said):
         wrong()
+
+
+def test_averages_against_a_mean_of_few_are_missed_as_often_as_is_said() -> None:
+    """The fourth average after a baseline of six, k of Student's t: 5 % of them; as of a known mean it is more."""
+    rng = np.random.default_rng(3)
+    k = float(stats.t.isf(0.025, 5))
+    missed = {True: 0, False: 0}
+    for x in rng.standard_normal((4000, 10)):
+        for known in missed:
+            found = against(x[6:], x[:6].mean(), x[:6].std(ddof=1), basis("", 6, 2), k=k, of_the_mean=known)
+            missed[known] += 3 in found.outside
+    assert missed[True] / 4000 == pytest.approx(0.05, abs=0.012)
+    assert missed[False] > 1.3 * missed[True]
+
+
+def test_normal_scores_are_standard_normal() -> None:
+    rng = np.random.default_rng(4)
+    z = [normal_scores(x[5:], x[:5].mean(), x[:5].std(ddof=1), 5)[0] for x in rng.standard_normal((4000, 6))]
+    assert stats.kstest(z, stats.norm.cdf).pvalue > 0.01
+    expected = stats.norm.isf(stats.t.sf(2.0 / np.sqrt(1.2), 4))
+    assert normal_scores(np.array([2.0, -2.0]), 0.0, 1.0, 5) == pytest.approx([expected, -expected], rel=1e-9)
+    assert np.isfinite(normal_scores(np.array([1e9]), 0.0, 1.0, 5)).all()

@@ -35,6 +35,8 @@ def test_a_rule_finds_what_it_is_for(name: str) -> None:
     for sign in (1.0, -1.0):
         found = runs(10.0 + 2.0 * sign * np.array(z), 10.0, 2.0, [name]).found
         assert [(run.rule, run.first, run.last) for run in found] == [(name, *place)]
+        if name in USUAL:
+            assert found[0].upward == (sign * (1.0 if name != "two-of-three" else -1.0) > 0.0)
     short = runs(np.delete(np.array(z), place[0]), 0.0, 1.0, [name])
     assert short.found == ()
 

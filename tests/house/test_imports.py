@@ -32,6 +32,7 @@ FLOORS = {
     "planning": 7,
     "reproduce": 7,
     "uncertainties": 8,
+    "checking": 8,
     "documents": 9,
     "records": 10,
     "cli": 11,

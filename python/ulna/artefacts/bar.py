@@ -55,6 +55,7 @@ class Bar(Kind):
     """Two seats a known length apart."""
 
     name = "bar"
+    lent = "length"
     table, simulated = BarTable, SimulatedBar
     named, scattered, indivisible = True, False, True
     residual_columns = ("feature", "x_mm", "y_mm", "z_mm")

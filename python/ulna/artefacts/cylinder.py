@@ -35,6 +35,7 @@ class Cylinder(Round):
     """A shaft or a bore."""
 
     name = "cylinder"
+    lent = "diameter"
     table, simulated = CylinderTable, SimulatedCylinder
     fewest, least_planned = 6, 5
     size_mm = (100.0, 100.0)

@@ -35,6 +35,8 @@ class Kind(ABC):
     """Of a study file or a plan file."""
     simulated: ClassVar[type[TouchedTable]]
     """Of a simulation file: the same, and how it is touched."""
+    lent: ClassVar[str | None] = None
+    """The quantity by which a certificate states one, which a study need not write out; None: no single one does."""
     poses: ClassVar[int] = 1
     """How many poses of the arm a row has."""
     named: ClassVar[bool]

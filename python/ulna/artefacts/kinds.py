@@ -58,6 +58,8 @@ def check_kinds(document: dict[str, Any], path: Path) -> None:
     """The kinds of all artefacts, before the rest of the tables is looked at. Raises UlnaInputError."""
     tables = document.get("artefact")
     for name, table in tables.items() if isinstance(tables, dict) else ():
+        if isinstance(table, dict) and "record" in table and "kind" not in table:
+            continue  # the record knows
         check_kind(table, f"artefact.{name}", list(KINDS), path)
 
 

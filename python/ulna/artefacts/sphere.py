@@ -27,6 +27,7 @@ class Sphere(Round):
     """A ball or a hollow."""
 
     name = "sphere"
+    lent = "diameter"
     table, simulated = SphereTable, SimulatedSphere
     fewest = 5
 

@@ -24,6 +24,7 @@ COMMANDS = {
     "measure": "ulna.cli.measure",
     "uncertainty": "ulna.cli.uncertainty",
     "cross-validate": "ulna.cli.cross_validate",
+    "check": "ulna.cli.check",
     "compare": "ulna.cli.compare",
     "certificate": "ulna.cli.certificate",
     "batch": "ulna.cli.batch",

@@ -10,7 +10,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.ground.quantiles import student
+from ulna.ground.quantiles import fisher_beyond, normal, student
 
 
 @dataclass(frozen=True)
@@ -68,3 +68,11 @@ def as_many(values: Sequence[float] | F64, of: F64, what: str) -> F64:
 def two_sided(freedom: int, p: float) -> float:
     """The t that Student's, with 1 or more degrees of freedom, is inside of with probability p, on both sides."""
     return float(student(float(freedom), 0.5 * (1.0 + p)))
+
+
+def normal_scores(values: F64, centre: float, s: float, n: int) -> F64:
+    """(N,) new figures against the mean and the s > 0 of n → (N,) numbers that are standard normal where nothing has
+    changed: Student's t of a prediction, (x - mean) / (s √(1 + 1/n)), by its probability."""
+    t = (values - centre) / (s * np.sqrt(1.0 + 1.0 / n))
+    beyond = [max(fisher_beyond(1.0, n - 1.0, each * each), 1e-15) for each in t.tolist()]
+    return np.asarray(np.sign(t) * [normal(1.0 - 0.5 * p) for p in beyond], dtype=np.float64)

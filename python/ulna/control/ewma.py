@@ -64,12 +64,20 @@ def ewma(
 
 
 def against(
-    new: F64, centre: float, s: float, rests_on: Basis, weight: float = 0.2, k: float = 3.0, exact: bool = True
+    new: F64,
+    centre: float,
+    s: float,
+    rests_on: Basis,
+    weight: float = 0.2,
+    k: float = 3.0,
+    exact: bool = True,
+    of_the_mean: bool = False,
 ) -> Ewma:
     """(N,) figures against a known centre and s.
 
     exact: limits of the t-th average, k s √(λ/(2 - λ) (1 - (1 - λ)^(2 t))), which begin narrow; else those after long,
-    k s √(λ/(2 - λ)).
+    k s √(λ/(2 - λ)). of_the_mean: the centre is itself a mean of n figures, so that (1 - (1 - λ)^t)²/n comes under the
+    root: with k Student's t for n - 1, the t-th average is outside by chance as often as that t says.
     """
     if not 0.0 < weight <= 1.0 or k <= 0.0:
         raise UlnaInputError(f"EWMA: got weight {weight:g} and k {k:g}; expected 0 < weight <= 1 and k > 0.")
@@ -80,5 +88,6 @@ def against(
         averages[at] = z
     count = np.arange(1, len(new) + 1)
     grown = 1.0 - (1.0 - weight) ** (2 * count) if exact else np.ones(len(new))
-    half = k * s * np.sqrt(weight / (2.0 - weight) * grown)
+    own = (1.0 - (1.0 - weight) ** count) ** 2 / rests_on.n if of_the_mean else np.zeros(len(new))
+    half = k * s * np.sqrt(weight / (2.0 - weight) * grown + own)
     return Ewma(rests_on, weight, k, centre, averages, half, np.flatnonzero(np.abs(averages - centre) > half))

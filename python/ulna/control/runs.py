@@ -27,6 +27,8 @@ class Rule:
     """Figures that it looks at."""
     found: Callable[[F64], Bool]
     """(N, length) figures in s from the centre, each row of some that follow each other → (N,) whether it is so."""
+    upward: Callable[[F64], bool] = lambda z: z.mean() > 0.0
+    """(M,) figures of a run → whether it is above the centre, or rising."""
 
 
 def _sides(some: int, beyond: float) -> Callable[[F64], Bool]:
@@ -51,7 +53,7 @@ RULES = {
         Rule("two-of-three", "two of three beyond 2 s, on one side", 3, _sides(2, 2.0)),
         Rule("four-of-five", "four of five beyond 1 s, on one side", 5, _sides(4, 1.0)),
         Rule("eight-on-one-side", "eight in a row on one side of the mean", 8, _sides(8, 0.0)),
-        Rule("six-rising", "six in a row steadily rising or falling", 6, _rising),
+        Rule("six-rising", "six in a row steadily rising or falling", 6, _rising, lambda z: z[-1] > z[0]),
         Rule("fourteen-alternating", "fourteen in a row by turns up and down", 14, _alternating),
         Rule("fifteen-near", "fifteen in a row within 1 s", 15, lambda z: np.asarray((np.abs(z) < 1.0).all(axis=1))),
         Rule("eight-apart", "eight in a row beyond 1 s", 8, lambda z: np.asarray((np.abs(z) > 1.0).all(axis=1))),
@@ -69,6 +71,8 @@ class Run:
     first: int
     """Place of the first figure that belongs to it, from 0."""
     last: int
+    upward: bool
+    """Above the centre on the whole, or rising."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,6 @@ def _of(rule: Rule, z: F64) -> list[Run]:
     for first in np.flatnonzero(rule.found(rows)).tolist():
         last = first + rule.length - 1
         if found and first <= found[-1].last:
-            found[-1] = Run(rule.name, rule.words, found[-1].first, last)
-        else:
-            found.append(Run(rule.name, rule.words, first, last))
+            first = found.pop().first
+        found.append(Run(rule.name, rule.words, first, last, bool(rule.upward(z[first : last + 1]))))
     return found

@@ -36,7 +36,7 @@ class Open(BaseModel):
     model_config = ConfigDict(strict=True, extra="allow", allow_inf_nan=False, defer_build=True)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # hashed by what it is, as annotations must be
 class OneOf:
     """Note of an annotation: the tables of a registry, told apart by their key `kind`.
 

@@ -52,16 +52,16 @@ def equipment(connection: Connection, name: str, kinds: Sequence[str] = ()) -> R
 
 
 def certified(connection: Connection, artefact: str, quantity: str, on: str) -> Row | None:
-    """What the newest certificate that held on a day says; None where none did."""
-    asked = (
+    """What the certificate says that was in force last on a day, valid still or not; None where none ever was. A later
+    certificate takes the place of an earlier one, also where it runs out sooner."""
+    begun = func.coalesce(CERTIFIED.c.valid_from, "")
+    asked_for = (
         select(CERTIFIED)
-        .where(CERTIFIED.c.artefact == artefact, CERTIFIED.c.quantity == quantity)
-        .order_by(CERTIFIED.c.seq.desc())
+        .where(CERTIFIED.c.artefact == artefact, CERTIFIED.c.quantity == quantity, begun <= on)
+        .order_by(begun.desc(), CERTIFIED.c.seq.desc())
+        .limit(1)
     )
-    for row in rows(connection, asked):
-        if (row["valid_from"] or "") <= on <= (row["valid_to"] or "9999"):
-            return row
-    return None
+    return next(iter(rows(connection, asked_for)), None)
 
 
 def standing(connection: Connection, subject: str) -> Row | None:

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag
 from ulna.arm.effects.effects import Extra
 from ulna.arm.payload import PayloadTable
 from ulna.arm.stated import PositiveEach, each_kind
-from ulna.artefacts.kinds import ArtefactTable
+from ulna.artefacts.lent import StatedOrLent
 from ulna.formats.models import Strict, table_or_plain
 from ulna.formats.numbers import Positive
 from ulna.formats.units import Units
@@ -101,7 +101,7 @@ class StudyFile(Strict):
     """Path of the arm file, relative to the study file."""
     units: Units
     readings: Annotated[list[ReadingsEntry], Field(min_length=1)]
-    artefact: Annotated[dict[str, ArtefactTable], Field(min_length=1)]
+    artefact: Annotated[dict[str, StatedOrLent], Field(min_length=1)]
     payload: dict[str, PayloadTable] | None = None
     """What the arm carried beside its own masses, by name; readings say which. For compliance."""
     carried: str | None = None

@@ -79,7 +79,7 @@ def load_verify(path: Path, given: ArmLike | None = None) -> VerifyPlan:
     """Read a verify file, its profile and its readings. Raises UlnaInputError."""
     document, sha256 = read_toml(path, WHAT)
     check_format(document, path, "ulna-verify")
-    _check_kinds(document, path)
+    check_artefacts(document, path)
     file = fill(VerifyFile, document, path)
     profile = load_profile(file.profile, path.parent, f"{path}: key 'profile'")
     arms: dict[Path, StatedArm] = {}
@@ -98,24 +98,31 @@ def load_verify(path: Path, given: ArmLike | None = None) -> VerifyPlan:
             arms[own] = StatedArm.load(own)
         reader = None if own is None else arms[own]
         touches = read_touches(
-            entry, number, setting, None if reader is None else reader.arm, None if reader is None else own, remarks
+            path.parent / entry.file,
+            entry,
+            f"readings.{number}",
+            setting,
+            None if reader is None else reader.arm,
+            None if reader is None else own,
+            remarks,
         )
         if touches.source == "encoders" and reader is not None:
             used.add(own)
             touches = replace(touches, arm_sha256=reader.sha256)
-        _check_labels(touches, file, profile, path)
+        check_labels(touches, file, profile, path)
         found.setdefault(entry.state, []).append(touches)
     remarks += [f"{each}: the arm is not used: its readings are coordinates." for each in arms if each not in used]
     return VerifyPlan(path, sha256, file, profile, list(arms.values()), found, remarks)
 
 
-def _check_kinds(document: dict[str, Any], path: Path) -> None:
+def check_artefacts(document: dict[str, Any], path: Path) -> None:
+    """Whether all are of a known kind. Raises UlnaInputError."""
     artefacts = document.get("artefact")
     for name, table in artefacts.items() if isinstance(artefacts, dict) else ():
         check_kind(table, f"artefact.{name}", list(ARTEFACTS), path)
 
 
-def _check_labels(touches: Touches, file: VerifyFile, profile: Profile, path: Path) -> None:
+def check_labels(touches: Touches, file: VerifyFile, profile: Profile, path: Path) -> None:
     """Every test and artefact that rows name must be known; a test may be left out where there is one."""
     tests = list(profile.file.test)
     if len(tests) == 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 from ulna.formats.models import check_kind, fill
 from ulna.formats.toml import check_format, read_toml
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.verification.kinds.kind import TestTable
 from ulna.verification.kinds.registry import KINDS
 from ulna.verification.profile_tables import ProfileFile
 
@@ -41,20 +43,20 @@ def load_profile(name: str, beside: Path, asked: str) -> Profile:
     """By name, or by path relative to the folder `beside`; asked: the key that names it. Raises UlnaInputError."""
     path = _path(name, beside, asked)
     document, sha256 = _document(path, [])
-    _check_kinds(document, path)
+    check_tests(document, path)
     file = fill(ProfileFile, document, path)
     if file.limit and file.unit is None:
         raise UlnaInputError(
             f"{path}: key 'unit' is missing, but there are limits; units are never guessed. Add unit = "
             '"mm" (or m, in).'
         )
-    _check_counts(file, path)
+    check_counts(file.test, path)
     return Profile(file, path, sha256)
 
 
-def _check_counts(file: ProfileFile, path: Path) -> None:
+def check_counts(tests: Mapping[str, TestTable], path: Path) -> None:
     """Nobody touches more than a hundred thousand times. Raises UlnaInputError."""
-    for name, test in file.test.items():
+    for name, test in tests.items():
         counts = {key: value for key, value in test if type(value) is int}
         if math.prod(counts.values()) > MOST_TOUCHES:
             shown = " × ".join(f"{value} {key}" for key, value in counts.items())
@@ -123,7 +125,8 @@ def _merged(under: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _check_kinds(document: dict[str, Any], path: Path) -> None:
+def check_tests(document: dict[str, Any], path: Path) -> None:
+    """Whether all are of a known kind. Raises UlnaInputError."""
     tests = document.get("test")
     for name, table in tests.items() if isinstance(tests, dict) else ():
         check_kind(table, f"test.{name}", list(KINDS), path)

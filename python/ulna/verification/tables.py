@@ -33,16 +33,9 @@ class FixtureTable(Strict):
     """Standard uncertainty that they add to a value."""
 
 
-class VerifyReadings(TableKeys):
-    """One file of touches. All keys but file fill the column where the file has none."""
+class TouchKeys(TableKeys):
+    """Of a table of touches. All keys fill the column where the table has none."""
 
-    file: str
-    """Path, relative to the verify file."""
-    state: State = "as-left"
-    """Before or after calibration and repair."""
-    arm: str | None = None
-    """Of encoder readings: path of the arm file or result that turns these into points, in place of the command's ARM:
-    the arm as found, say."""
     angle: Literal["rad", "deg", "counts"] | None = None
     """Unit of encoder angles; the file's angle unit where it is not given."""
     probe: str | None = None
@@ -57,6 +50,18 @@ class VerifyReadings(TableKeys):
     repeat: str | None = None
     feature: str | None = None
     """Which end of a length: A or B."""
+
+
+class VerifyReadings(TouchKeys):
+    """One file of touches."""
+
+    file: str
+    """Path, relative to the verify file."""
+    state: State = "as-left"
+    """Before or after calibration and repair."""
+    arm: str | None = None
+    """Of encoder readings: path of the arm file or result that turns these into points, in place of the command's ARM:
+    the arm as found, say."""
 
 
 class VerifyFile(Strict):

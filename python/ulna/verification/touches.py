@@ -25,7 +25,7 @@ from ulna.study.readings.columns import ReadingsEntry, Source, check_columns, co
 from ulna.study.readings.conditions import is_condition, said_of
 from ulna.study.readings.payloads import carried_in
 from ulna.study.readings.readings import angle_factors, angles
-from ulna.verification.tables import VerifyReadings
+from ulna.verification.tables import TouchKeys
 
 WHAT = "touches (a table with the columns x, y, z, or q1, q2, …)"
 LABELS = ("test", "artefact", "position", "orientation", "repeat", "feature")
@@ -87,28 +87,36 @@ def joined(parts: Sequence[Touches]) -> Touches:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a verify file says of all its readings."""
+    """What a verify file, or a protocol, says of all its readings."""
 
     path: Path
     units: Units
     ball_mm: float | None
     temperature_c: float | None
+    arm_by: str = "expected `ulna verify ARM PLAN`. Name the arm's file"
+    """What to do where no arm is named."""
+    table: str = "[[readings]]"
+    """How messages call what says how readings are written."""
 
 
 def read_touches(
-    entry: VerifyReadings, number: int, setting: Setting, arm: Arm | None, arm_file: Path | None, remarks: list[str]
+    path: Path,
+    entry: TouchKeys,
+    key: str,
+    setting: Setting,
+    arm: Arm | None,
+    arm_file: Path | None,
+    remarks: list[str],
 ) -> Touches:
-    """One file. Raises UlnaInputError."""
-    path = setting.path.parent / entry.file
-    key = f"readings.{number}"
-    layout = Layout.of(entry, (f"{setting.path}: key '{key}.", "'"), "[[readings]]")
+    """One file; key: that of its table, `readings.2`. Raises UlnaInputError."""
+    layout = Layout.of(entry, (f"{setting.path}: key '{key}.", "'"), setting.table)
     joints = 0 if arm is None else arm.n
     header = read_header(path, WHAT, layout, [*known_columns(joints, True), *LABELS])
     encoders = [column for column in header.columns if column[0] == "q" and column[1:].isdecimal()]
     if encoders and arm is None:
         raise UlnaInputError(
-            f"{path}: the columns {encoders[0]} … are encoder readings, but no arm is named; expected "
-            "`ulna verify ARM PLAN`. Name the arm's file, or give readings as x, y, z."
+            f"{path}: the columns {encoders[0]} … are encoder readings, but no arm is named; "
+            f"{setting.arm_by}, or give readings as x, y, z."
         )
     if encoders and any(axis in header.columns for axis in XYZ):
         raise UlnaInputError(
@@ -129,7 +137,7 @@ def read_touches(
     ]
     frame = _filled(header, needed)
     row = np.arange(1, len(frame) + 1)
-    reading = ReadingsEntry(file=entry.file, angle=entry.angle, probe=entry.probe, payload=entry.payload)
+    reading = ReadingsEntry(file=path.name, angle=entry.angle, probe=entry.probe, payload=entry.payload)
     source = Source(setting.path, key, reading, 0, arm_file)
     factors = angle_factors(source, arm, setting.units)
     q_rad = angles(frame, "q", factors)
@@ -147,7 +155,7 @@ def read_touches(
     return Touches(path, file_sha256(path), "encoders", _labels(frame, entry, len(row)), p_mm, balls[probe], row)
 
 
-def _coordinates(header: Header, entry: VerifyReadings, setting: Setting, remarks: list[str]) -> Touches:
+def _coordinates(header: Header, entry: TouchKeys, setting: Setting, remarks: list[str]) -> Touches:
     missing = [axis for axis in XYZ if axis not in header.columns]
     if missing:
         raise UlnaInputError(
@@ -156,7 +164,7 @@ def _coordinates(header: Header, entry: VerifyReadings, setting: Setting, remark
             "correct the header."
         )
     for key in ("angle", "probe", "payload", "arm"):
-        if getattr(entry, key) is not None:
+        if getattr(entry, key, None) is not None:
             raise UlnaInputError(
                 f"{setting.path}: key 'readings.{key}': {header.path} holds coordinates; expected it with encoder "
                 "readings only. Remove it."
@@ -194,7 +202,7 @@ def _labels_of(header: Header) -> list[str]:
     return [name for name in LABELS if name in header.columns]
 
 
-def _labels(frame: pl.DataFrame, entry: VerifyReadings, count: int) -> dict[str, Texts]:
+def _labels(frame: pl.DataFrame, entry: TouchKeys, count: int) -> dict[str, Texts]:
     """The file's own cells; of empty ones, and of columns that are missing, what the verify file says."""
     found = {}
     for name in LABELS:

@@ -131,6 +131,11 @@ def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | No
     stated = load_verify(Path(plan), arm)
     for remark in stated.warnings:
         warnings.warn(remark, InputWarning, stacklevel=2)
+    return evaluated(stated, progress)
+
+
+def evaluated(stated: VerifyPlan, progress: Progress | None = None) -> Verification:
+    """What was read, evaluated. Raises UlnaInputError for whatever cannot be."""
     rule, limits = _rule(stated), _limits(stated)
     processes = _processes(stated)
     states = [state for state in STATES if state in stated.touches]

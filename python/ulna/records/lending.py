@@ -1,0 +1,49 @@
+"""What a study asks of the record: an artefact's size by the certificate that is valid today."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ulna.artefacts.lent import Lent
+from ulna.ground.errors import UlnaInputError
+from ulna.records import asked
+from ulna.records.bench import Bench
+from ulna.records.due import today
+
+
+def lent(name: str, quantities: Sequence[str], expired_because: str | None) -> Lent:
+    """The first of the quantities that its certificate states. Raises UlnaInputError for what is not registered, not in
+    use, has no such value, or none that is valid, unless a reason is given."""
+    bench, on = Bench.open(), today()
+    with bench.reading() as connection:
+        row = asked.equipment(connection, name, ("artefact",))
+        if row["state"] != "in use":
+            raise UlnaInputError(
+                f"'{name}' is {row['state']}; expected an artefact in use. Name another, or release it."
+            )
+        known = str(row["name"])
+        found = (asked.certified(connection, known, quantity, on) for quantity in quantities)
+        row = next((each for each in found if each is not None), None)
+    if row is None:
+        raise UlnaInputError(
+            f"'{name}' has no certified {' or '.join(quantities)} from {on} or before; expected one. Enter it: ulna "
+            "record "
+            f'artefact {known!r} --value "{quantities[0]}=…±…".'
+        )
+    if on <= (row["valid_to"] or "9999"):
+        return _lent(known, row, "")
+    if expired_because is None:
+        raise UlnaInputError(
+            f"the certificate of '{name}' was valid to {row['valid_to']}, and today is {on}; expected a valid one. "
+            "Enter the "
+            'new one, or say why this one is used: expired_because = "…".'
+        )
+    return _lent(known, row, f"; NOT VALID on {on}, used because: {expired_because}")
+
+
+def _lent(name: str, row: asked.Row, more: str) -> Lent:
+    number = f"certificate {row['number']}" if row["number"] else "a certificate without a number"
+    until = f", valid to {row['valid_to']}" if row["valid_to"] else ""
+    value, u, unit = float(row["value"]), float(row["u"]), row["unit"]
+    said = f"{row['quantity']} {value:.10g} {unit}, u {u:.3g} {unit}, by {number}{until}{more}."
+    return Lent(name, str(row["quantity"]), value, u, said)
