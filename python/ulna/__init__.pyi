@@ -24,6 +24,7 @@ from .measuring.measurement import Measurement
 from .planning.outcome import Plan
 from .planning.plan import plan
 from .planning.spec import PlanSpec
+from .records.records import Records
 from .simulation.simulate import Simulated, simulate
 from .simulation.spec import Simulation
 from .study.data import FitOptions, Noise, Prior

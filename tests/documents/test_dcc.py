@@ -193,7 +193,7 @@ def test_statements_on_draft_traceability_and_noise(made: Callable[..., bytes]) 
     assert "in the manner of JCGM 100:2008" in told["Measurement uncertainty"][0]
     assert "noise of the readings was stated by the study" in told["Measurement uncertainty"][0]
     told = reading.statements(made(without_noise, EXAMPLE.read_text(encoding="utf-8")))
-    assert "through the ball bar" in told["Metrological traceability"][0]
+    assert "through the standards" in told["Metrological traceability"][0]
     assert "estimated from the residuals" in told["Measurement uncertainty"][0]
     assert "Student's t with 138 degrees of freedom" in told["Measurement uncertainty"][0]
     assert told["Remark"] == ["The arm is virtual: its readings were computed."]

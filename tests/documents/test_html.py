@@ -176,6 +176,7 @@ def test_outliers_are_marked_and_listed(hostile, page):
 
 SECTIONS = [
     "summary",
+    "method",
     "quality",
     "distribution",
     "joints",

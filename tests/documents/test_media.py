@@ -22,8 +22,9 @@ from ulna.documents.languages.words import Words
 from ulna.documents.pdf import setting
 from ulna.documents.pdf.drawings import DRAWN as ON_PAPER
 from ulna.documents.pdf.layout import LAYOUTS
-from ulna.documents.pdf.order import parts
+from ulna.documents.pdf.order import annexed, parts
 from ulna.documents.pdf.render import certificate
+from ulna.documents.pdf.text import decimals
 from ulna.documents.sections.blocks import Block, Table, Tiles, Tone
 
 Rows = list[dict[str, str]]
@@ -73,9 +74,12 @@ def said(value: Any) -> str:
 def test_every_table_on_paper_is_on_the_page_cell_by_cell(contents: list[Content], language: str) -> None:
     compared = 0
     for content in contents:
-        on_page = of_page(render(content, language))
+        on_page = [
+            [{head: decimals(text, language) for head, text in row.items()} for row in each]
+            for each in of_page(render(content, language))
+        ]
         data, _ = certificate(content, language)
-        for table in (block for block in data["blocks"] if block["kind"] == "table"):
+        for table in (block for block in [*data["blocks"], *data["annex"]] if block["kind"] == "table"):
             heads = [bare(head) for head in table["heads"]]
             rows = [dict(zip(heads, (bare(said(each)) for each in row), strict=True)) for row in table["rows"]]
             same = [
@@ -97,7 +101,7 @@ def test_sections_that_both_have_say_the_same_sentences(contents: list[Content],
         headings = {cell(each) for each in re.findall(r"<h2>(.*?)</h2>", text)}
         words = Words(language)
         legend = plain(words("paper.cloud-legend"))  # of plots; a page shows it in colours
-        for part in parts(content, words):
+        for part in [*parts(content, words, annex=True), *annexed(content, words)]:
             if plain(part.heading) not in headings:
                 continue
             for sentences in (plain(getattr(block, "text", ())) for block in part.blocks):
@@ -117,7 +121,7 @@ def test_both_media_know_every_kind_of_block_and_tone() -> None:
 def test_every_table_has_its_looks_and_its_widths(contents: list[Content]) -> None:
     assert set(LAYOUTS) <= set(LOOKS)
     for content in contents:
-        for part in parts(content, Words("en")):
+        for part in [*parts(content, Words("en"), annex=True), *annexed(content, Words("en"))]:
             for block in part.blocks:
                 if isinstance(block, Table):
                     kept = block.only(LAYOUTS[block.name].widths)

@@ -36,6 +36,8 @@ class Artefact(Shown):
     fitted: bool = False
     """What is uncertain of it (the diameter, the length, the features) is fitted, within its uncertainty; a diameter of
     which no uncertainty is stated is fitted freely. Else it stays, and its uncertainty counts."""
+    record: str | None = None
+    """Where a record lent it: its name there."""
     own: object = None
     """What only its kind knows of it, as a record of the kind's own file."""
 

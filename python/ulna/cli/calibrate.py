@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from ulna.cli.options import All, Force, Json, Judge, OutFolder, StudyArgument
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -16,6 +17,7 @@ def calibrate(
     as_json: Json = False,
     everything: All = False,
     judge: Judge = False,
+    to_record: Record = None,
 ) -> None:
     """Fit an arm to readings: from encoder readings to a calibrated arm.
 
@@ -41,6 +43,7 @@ def calibrate(
 
     if out is not None:
         check_output(out, FILES, force)  # before the long work
+    kept = recording(to_record, out)
     loaded = Study.load(study)
     if judge:
         need("option --judge", "sklearn")
@@ -59,6 +62,10 @@ def calibrate(
         output.print_renderable(*brief_report(result, output.columns(), suspected))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES if (out / name).exists())}")
+        if kept is not None:
+            from ulna.records.outcomes import inputs_of, lent_by_record
+
+            record(kept, out / "result.json", inputs_of(loaded), lent_by_record(loaded))
     elif not as_json:
         output.say("Nothing was written: give -o DIR to keep the result.")
     if not result.fit.converged:

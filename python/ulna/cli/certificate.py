@@ -9,6 +9,7 @@ import typer
 
 from ulna.cli.completing import languages
 from ulna.cli.options import Force, Json, one_of
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -49,6 +50,7 @@ def certificate(
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="File to write.")] = None,
     force: Force = False,
     as_json: Json = False,
+    to_record: Record = None,
 ) -> None:
     """Write a calibration certificate, on paper (PDF) or for software (XML): the parameters with their expanded
     uncertainties, what was not determined, test values with statements of conformity, and what the laboratory file
@@ -76,10 +78,10 @@ def certificate(
     if make_lab:
         from ulna.documents.laboratory.template import TEMPLATE
 
-        if result is not None or dcc or as_pdf or force or verification or any(of_pdf.values()):
+        if result is not None or dcc or as_pdf or force or verification or any(of_pdf.values()) or to_record:
             raise UlnaInputError(
                 "option --make-lab: writes an empty laboratory file and takes no RESULT, LAB, --dcc, --pdf, "
-                "--verification, --force or option of a PDF. Leave them out."
+                "--verification, --force, --record or option of a PDF. Leave them out."
             )
         write_file(out, TEMPLATE)
         output.say(f"{out}: fill it in, then: ulna certificate RESULT {out} -o FILE.pdf")
@@ -105,6 +107,7 @@ def certificate(
             "and all that was computed. Leave it out, or name a file ending in .pdf."
         )
     tests = verification or []
+    kept = recording(to_record, out)
     refuse_inputs([out], [result, laboratory, *tests, *([study] if study else [])])
     if form == "pdf":
         need("option --pdf", *NEEDS["pdf"])
@@ -123,3 +126,4 @@ def certificate(
         else:
             output.print_renderable(*certificate_report(xml.as_dict()))
     output.say(f"Written: {out}, an unsigned draft. The laboratory checks it and signs it.")
+    record(kept, out)

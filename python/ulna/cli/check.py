@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ulna.cli.options import Force, Json
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -30,6 +31,7 @@ def check(
     ] = None,
     force: Force = False,
     as_json: Json = False,
+    to_record: Record = None,
 ) -> None:
     """Check an arm before work, in three minutes: a seat, a bar, their limits, and what they were before.
 
@@ -46,7 +48,9 @@ def check(
 
     if out is not None:
         check_output(out.parent, [out.name], force)
-    found = run_check(protocol, readings, history or (), date, operator)
+    kept = recording(to_record, out)
+    earlier = [*(history or ()), *([] if kept is None else kept.checks())]
+    found = run_check(protocol, readings, earlier, date, operator)
     if out is not None:
         found.save(out, force)
     if as_json:
@@ -55,4 +59,5 @@ def check(
         output.print_renderable(*check_report(found))
     if out is not None:
         output.say(f"Written: {out}")
+        record(kept, out, {"protocol": protocol, "readings": readings})
     raise typer.Exit(int(found.broken))

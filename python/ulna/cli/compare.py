@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ulna.cli.options import All, Json
+from ulna.cli.options import All, Force, Json
 from ulna.cli.running import guard
 
 
@@ -30,6 +30,11 @@ def compare(
         ),
     ] = 0.0,
     everything: All = False,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="FILE", help="Where lengths changed, and which parameters: PNG, SVG or PDF."),
+    ] = None,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Say what has moved between calibrations of one arm, and whether their uncertainties explain it.
@@ -41,12 +46,25 @@ def compare(
     Example: [bold]ulna compare out-2025 out-2026[/bold]
     """
     from ulna.cli import output
+    from ulna.cli.endings import by_ending
     from ulna.cli.printed.comparison import comparison_report
     from ulna.comparison.compare import compare as run_compare
+    from ulna.formats.output import check_output, refuse_inputs, write_file
+    from ulna.ground.extras import need
 
+    if picture is not None:
+        need("option --picture", "matplotlib")
+        (form,) = by_ending(picture, {".png": "png", ".svg": "svg", ".pdf": "pdf"}, [], folder=False)
+        refuse_inputs([picture], results)
+        check_output(picture.parent, [picture.name], force)
     found = run_compare(*results, probe=probe, shared_u=shared_u)
     if as_json:
         output.print_json(found.as_dict())
     else:
         output.print_renderable(*comparison_report(found, everything))
+    if picture is not None:
+        from ulna.documents.drawn.comparison import drawn
+
+        write_file(picture, drawn(found, form), force)
+        output.say(f"Written: {picture}")
     raise typer.Exit(int(any(step.moved for step in found.steps)))

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from ulna.cli.options import ArmFile, Force, Json, OutFolder, StudyArgument
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -26,6 +27,7 @@ def evaluate(
     out: OutFolder = None,
     force: Force = False,
     as_json: Json = False,
+    to_record: Record = None,
 ) -> None:
     """Judge an arm, unchanged, on a study's readings: seat scatter, length error, coordinate error, form.
 
@@ -46,6 +48,7 @@ def evaluate(
 
     if out is not None:
         check_output(out, FILES, force)
+    kept = recording(to_record, out)
     Arm.load(arm)  # what is wrong with it is said before the study is read
     wanted: Any = rows or rows_to_judge(study)
     loaded = Study.load(study, wanted)
@@ -61,3 +64,7 @@ def evaluate(
         output.print_renderable(*evaluation_report(evaluation, were_fitted(arm, evaluation)))
     if out is not None:
         output.say(f"Written: {', '.join(str(out / name) for name in FILES)}")
+        if kept is not None:
+            from ulna.records.outcomes import inputs_of, lent_by_record
+
+            record(kept, out / "evaluation.json", inputs_of(loaded), lent_by_record(loaded))

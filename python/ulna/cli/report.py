@@ -9,6 +9,7 @@ import typer
 
 from ulna.cli.completing import languages
 from ulna.cli.options import Force, Json, one_of
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -63,6 +64,7 @@ def report(
     ] = None,
     force: Force = False,
     as_json: Json = False,
+    to_record: Record = None,
 ) -> None:
     """Write the report of a calibration: what a metrologist wants to see before trusting it.
 
@@ -84,6 +86,7 @@ def report(
     asked = [name for name, given in (("html", as_html), ("pdf", as_pdf)) if given]
     formats = by_ending(out, {".html": "html", ".pdf": "pdf"}, asked, folder=True)
     wanted = targets(out, formats or ["html"], force)
+    kept = recording(to_record, out)
     with output.progress_bar() as progress:
         content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
     files = [result / "result.json" if result.is_dir() else result]
@@ -102,3 +105,5 @@ def report(
         elif said.key == "study.absent":
             output.say(f"The study {said.values['study']} was not found: give it with --study.")
     output.say(f"Written: {', '.join(str(path) for path in wanted.values())}")
+    for path in wanted.values():
+        record(kept, path)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ulna.cli.options import Force, Json, OutFolder
+from ulna.cli.recorded import Record, record, recording
 from ulna.cli.running import guard
 
 
@@ -39,6 +40,7 @@ def verify(
     out: OutFolder = None,
     force: Force = False,
     as_json: Json = False,
+    to_record: Record = None,
 ) -> None:
     """Evaluate an acceptance test in the manner of ISO 10360-12, ASME B89.4.22 or VDI/VDE 2617-9.
 
@@ -54,6 +56,8 @@ def verify(
     from ulna.ground.errors import UlnaInputError
 
     given = files or []
+    if make_plan is not None and to_record is not None:
+        raise UlnaInputError("option --record: files what was found; a plan has found nothing yet. Leave it out.")
     if make_plan is not None:
         _make(given, make_plan, play, encoder_noise, touch_noise, seed, out, force, as_json)
         return
@@ -64,10 +68,10 @@ def verify(
             f"ulna verify: got {len(given)} files; expected ARM PLAN, or PLAN alone for readings as x, y, z. Name "
             "them, or make a plan with --make-plan iso-10360-12."
         )
-    _evaluate(given, out, force, as_json)
+    _evaluate(given, out, force, as_json, to_record)
 
 
-def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -> None:
+def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool, to_record: str | None) -> None:
     from ulna.cli import output
     from ulna.cli.printed.verification import WORDS, verification_report
     from ulna.formats.output import check_output, refuse_inputs
@@ -78,6 +82,7 @@ def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -
     every = (FILE, TABLE, *PICTURES)
     if out is not None:
         check_output(out, every, force)
+    kept = recording(to_record, out)
     found = run_verify(plan, arm[0] if arm else None)
     if out is not None:
         read = [each.path for parts in found.plan.touches.values() for each in parts]
@@ -89,6 +94,8 @@ def _evaluate(files: list[Path], out: Path | None, force: bool, as_json: bool) -
         output.print_renderable(*verification_report(found))
     if out is not None:
         output.say(f"Written to {out}: {', '.join(found.files)}")
+        beside = {f"touches {k}": path for k, path in enumerate(read, start=1)}
+        record(kept, out / FILE, {"plan": plan, "profile": found.plan.profile.path, **beside})
     failed = [state.state for state in found.states if state.verdict == "fail"]
     if not failed:
         return

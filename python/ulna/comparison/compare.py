@@ -4,7 +4,7 @@ which parameters it is. Lengths mm."""
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import pairwise
 from typing import Any
 
@@ -69,6 +69,16 @@ class Moved:
 
 
 @dataclass(frozen=True)
+class Changes:
+    """The lengths that both determined."""
+
+    middle_mm: F64
+    """(K, 3) of each, earlier base frame."""
+    change_mm: F64
+    """(K,) later less earlier."""
+
+
+@dataclass(frozen=True)
 class Compared:
     """Two calibrations."""
 
@@ -89,6 +99,10 @@ class Compared:
     bands: list[Band]
     parameters: list[Moved]
     """Those of which a difference is known, the surest difference first."""
+    k: float
+    """U = k u for 95 %."""
+    changes: Changes = field(compare=False, repr=False)
+    """For pictures; the machine form has the bands."""
 
     @property
     def moved(self) -> bool:
@@ -111,7 +125,7 @@ class Comparison:
         """The machine form."""
         return {
             "format": FORMAT,
-            "steps": [asdict(step) | {"moved": step.moved} for step in self.steps],
+            "steps": [_numbers(step) | {"moved": step.moved} for step in self.steps],
             "provenance": {"program": "ulna", "version": VERSION},
         }
 
@@ -141,6 +155,11 @@ def compare(*calibrations: ArmLike, probe: str | None = None, shared_u: float = 
     return Comparison([_compared(each, lengths(each, LENGTHS, seed)) for each in pairs])
 
 
+def _numbers(step: Compared) -> dict[str, Any]:
+    """All but what pictures are made of."""
+    return {name: value for name, value in asdict(step).items() if name != "changes"}
+
+
 def _label(given: ArmLike, number: int) -> str:
     return str(given) if isinstance(given, str | os.PathLike) else f"calibration {number}"
 
@@ -148,6 +167,7 @@ def _label(given: ArmLike, number: int) -> str:
 def _compared(both: Pair, found: Lengths) -> Compared:
     what = determined(both, found)
     freedom = both.degrees_of_freedom
+    k = normal(0.975) if np.isinf(freedom) else float(np.ravel(student(freedom, 0.975))[0])
     by_kept = found.by_parameter @ what.kept
     u = what.u_of(by_kept)
     rows = np.flatnonzero(_known(both, found) & (u > _EXACT * found.before_mm))
@@ -166,8 +186,10 @@ def _compared(both: Pair, found: Lengths) -> Compared:
         what.p_value,
         beyond,
         what.lost,
-        _bands(both, found, u, rows),
+        _bands(found, k * u, u, rows),
         _moved(both, what),
+        k,
+        Changes(found.middle_mm[rows], found.change_mm[rows]),
     )
 
 
@@ -177,15 +199,13 @@ def _known(both: Pair, found: Lengths) -> Bool:
     return np.asarray(open_mm <= max(both.before.noise.moves_mm, both.after.noise.moves_mm))
 
 
-def _bands(both: Pair, found: Lengths, u: F64, sure: I64) -> list[Band]:
-    freedom = both.degrees_of_freedom
-    k = normal(0.975) if np.isinf(freedom) else float(np.ravel(student(freedom, 0.975))[0])
+def _bands(found: Lengths, expanded: F64, u: F64, sure: I64) -> list[Band]:
     edges = np.linspace(0.0, float(found.before_mm.max()), BANDS + 1)
     bands = []
     for low, high in pairwise(edges.tolist()):
         rows = sure[(found.before_mm[sure] > low) & (found.before_mm[sure] <= high)]
         if len(rows):
-            bands.append(_band(low, high, rows, k * u, u, found))
+            bands.append(_band(low, high, rows, expanded, u, found))
     return bands
 
 

@@ -22,14 +22,15 @@ def lent(name: str, quantities: Sequence[str], expired_because: str | None) -> L
                 f"'{name}' is {row['state']}; expected an artefact in use. Name another, or release it."
             )
         known = str(row["name"])
-        found = (asked.certified(connection, known, quantity, on) for quantity in quantities)
-        row = next((each for each in found if each is not None), None)
-    if row is None:
+        found = [asked.certified(connection, known, quantity, on) for quantity in quantities]
+    rows = [each for each in found if each is not None]
+    if not rows:
         raise UlnaInputError(
             f"'{name}' has no certified {' or '.join(quantities)} from {on} or before; expected one. Enter it: ulna "
             "record "
             f'artefact {known!r} --value "{quantities[0]}=…±…".'
         )
+    row = rows[0]
     if on <= (row["valid_to"] or "9999"):
         return _lent(known, row, "")
     if expired_because is None:

@@ -14,7 +14,7 @@ from ulna.arm.payload import joined_payloads, payloads_of
 from ulna.arm.stated import check_alike
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import check_kinds, made
-from ulna.artefacts.lent import stated
+from ulna.artefacts.lent import LentTable, stated
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.artefacts.tables import Place
 from ulna.formats.models import fill
@@ -60,6 +60,8 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     place = Place(path, file.units, remarks, files)
     for name, table in file.artefact.items():
         artefacts[name] = made(name, stated(name, table, place), place)
+        if isinstance(table, LentTable):
+            artefacts[name] = replace(artefacts[name], record=table.record)
     readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
     study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
     remark_vain_payloads(study)

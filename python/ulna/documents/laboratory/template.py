@@ -81,7 +81,6 @@ temperature = { value = "", u = "", unit = "°C" }
 # [[method]]                   # procedures that the laboratory followed; Ulna adds how it fitted
 # name = ""
 # description = ""
-# condition = ""               # on receipt: "no damage visible", say
 # norms = ["ISO 10360-12:2016"]
 # references = [""]
 """

@@ -50,7 +50,7 @@ LAYOUTS: dict[str, Layout] = {
         size_pt=7.5,
     ),
     "verification": Layout(
-        {"condition": 1.8, "figure": 2.8, "verdict": 1.2}
+        {"condition": 1.7, "figure": 2.7, "verdict": 1.5}
         | _shares(1, "value-mm", "expanded-mm", "limit-mm", "guard-mm")
         | {"values": 0.9}
     ),

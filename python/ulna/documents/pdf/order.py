@@ -84,7 +84,7 @@ def statements(words: Words, annex: bool) -> list[blocks.Block]:
 def _results(content: Content, words: Words) -> list[Part]:
     found = content.verification
     known = not content.identification.lost and not content.identification.weak
-    said = determined.determined(content, words)
+    said = determined.determined(content, words, brief=True)
     tested = lacking.lacking(content, words, "verification") if found is None else acceptance.verification(found, words)
     return [
         _part("verification", words, tested),
@@ -97,6 +97,7 @@ def _results(content: Content, words: Words) -> list[Part]:
 
 def _fitted(content: Content, words: Words) -> list[Part]:
     found = content.verification
+    found_out = content.identification.lost or content.identification.weak
     single: list[blocks.Block] = []
     if found is not None:
         single = [*acceptance.formulas(found, words), *plots.tested_lengths(found, words)]
@@ -105,6 +106,7 @@ def _fitted(content: Content, words: Words) -> list[Part]:
         _part("summary", words, [summary.ending(content, words), *summary.counts(content, words)]),
         _part("quality", words, [*quality.quality(content, words), *plots.before_after(content, words)]),
         _part("verification", words, single),
+        _part("determined", words, determined.determined(content, words) if found_out else []),
         _part("extras", words, extras.extras(content, words)),
         Part(words("parameters.cylindrical"), parameters.cylindrical(content, words)),
     ]

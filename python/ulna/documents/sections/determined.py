@@ -13,25 +13,27 @@ from ulna.documents.sections.blocks import Block, Heading, Paragraph, Table, own
 from ulna.ground.digits import uncertainty
 
 
-def determined(content: Content, words: Words) -> list[Block]:
-    """All directions, and what is known from priors alone."""
+def determined(content: Content, words: Words, brief: bool = False) -> list[Block]:
+    """All directions, and what is known from priors alone. brief: without why and what would help, which is advice to
+    who calibrates, and in English."""
     found = content.identification
     page: list[Block] = []
     if not found.lost:
         page.append(Paragraph(words("determined.with-priors" if found.from_prior else "determined.all")))
     for title, directions in (("determined.lost", found.lost), ("determined.weak", found.weak)):
         if directions:
-            page += [Heading(words(title)), _directions(directions, words(title), words)]
-    if (found.lost or found.weak) and words.language != "en":
+            page += [Heading(words(title)), _directions(directions, words(title), words, brief)]
+    if (found.lost or found.weak) and not brief and words.language != "en":
         page.append(Paragraph(words("note.english"), "note"))
     if found.from_prior:
         page.append(Paragraph(words("determined.from-prior", names=", ".join(found.from_prior))))
     return page
 
 
-def _directions(directions: Sequence[Mapping[str, Any]], label: Text, words: Words) -> Table:
+def _directions(directions: Sequence[Mapping[str, Any]], label: Text, words: Words, brief: bool) -> Table:
     columns = ("combination", "cause", "because", "remedy")
-    return table("directions", label, words, columns, [_direction(each, words) for each in directions], left=4)
+    made = table("directions", label, words, columns, [_direction(each, words) for each in directions], left=4)
+    return made.only(columns[:2]) if brief else made
 
 
 def _direction(each: Mapping[str, Any], words: Words) -> list[Text]:

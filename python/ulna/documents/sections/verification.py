@@ -9,8 +9,9 @@ from ulna.documents.languages.text import NONE, Text, joined, named, styled
 from ulna.documents.languages.words import Words
 from ulna.documents.sections.blocks import Block, Fact, Facts, Heading, Listed, Paragraph, own, table
 from ulna.documents.sections.decision import STYLES, verdict
+from ulna.documents.sections.departures import departure
 from ulna.documents.sections.risk import share
-from ulna.documents.sections.verbatim import english, formula, left_out, manner
+from ulna.documents.sections.verbatim import formula, left_out, manner
 from ulna.ground.digits import figure_mm, fixed, plain_uncertainty, rounded, uncertainty
 from ulna.verification.lifted import Lifted
 from ulna.verification.result_file import FigureTable, StateTable, TestedTable, ValueTable
@@ -33,10 +34,11 @@ def verification(found: Verification, words: Words) -> list[Block]:
         Paragraph(not_covered(found.scanner, words), "note" if found.scanner is None else "missing"),
     ]
     for state in file.states:
-        said = [*state.departures, *(f"{test.name}: {each}" for test in state.tests for each in test.departures)]
+        said = [departure(each, words) for each in state.departures]
+        said += [(*named(test.name), ": ", *departure(each, words)) for test in state.tests for each in test.departures]
         if said:
             title = words("verification.departures", state=words(f"state.{state.state}"))
-            page += [Paragraph(title, "missing"), _english(said)]
+            page += [Paragraph(title, "missing"), Listed(said)]
     return page
 
 
@@ -126,7 +128,3 @@ def _single(state: StateTable, figure: FigureTable, each: ValueTable, words: Wor
 
 def _mm(value: float | None) -> str:
     return "–" if value is None else figure_mm(value)
-
-
-def _english(texts: list[str]) -> Listed:
-    return Listed([english(each) for each in texts])

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError
 from ulna.records.filed.arm import ArmKind
+from ulna.records.filed.check import CheckKind
 from ulna.records.filed.cross_validation import CrossValidationKind
 from ulna.records.filed.evaluation import EvaluationKind
 from ulna.records.filed.kind import FiledKind
@@ -22,6 +23,7 @@ KINDS: tuple[FiledKind, ...] = (
     EvaluationKind(),
     CrossValidationKind(),
     VerificationKind(),
+    CheckKind(),
     ArmKind(),
     OTHER,
 )
