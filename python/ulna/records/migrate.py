@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ulna.records import schema
 from ulna.records.bench import Bench
 from ulna.records.copies import Copied, backup
 from ulna.records.rebuild import index_anew
-from ulna.records.schema import NEWEST, check_schema, schema_of, upgrade
 
 
 def migrate(bench: Bench, backup_to: Path) -> Copied | None:
     """To the newest schema, after a backup into a folder; None where it has it. The chain stays as it is, the index is
     made anew from it, all in one transaction. Raises UlnaInputError."""
     with bench.database.reading() as connection:
-        if schema_of(connection) == NEWEST:
+        found = schema.schema_of(connection)
+        if found == schema.NEWEST:
             return None
-        if schema_of(connection) is None or str(schema_of(connection)) > NEWEST:
-            check_schema(connection, bench.folder)
+        if found is None or found > schema.NEWEST:
+            schema.check_schema(connection, bench.folder)
     copied = backup(bench, backup_to)
     with bench.database.writing() as connection:
-        upgrade(connection)
+        schema.upgrade(connection)
         index_anew(connection, bench.files)
     return copied
