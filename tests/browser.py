@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
+from tests.real_parts import lacking
 
 
 def dom(page: str, folder: Path, script: str = "") -> str:
@@ -15,7 +15,7 @@ def dom(page: str, folder: Path, script: str = "") -> str:
     that run, so a page with a script has none."""
     browser = next((found for each in ("chromium", "google-chrome") if (found := shutil.which(each))), None)
     if browser is None:
-        pytest.skip("no Chromium here")
+        lacking("Chromium")
     if script:
         page = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', "", page)
         page = page.replace("</body>", f"<script>{script}</script></body>")
@@ -30,7 +30,7 @@ def node(script: str, folder: Path) -> str:
     """What a script prints under Node.js."""
     program = shutil.which("node")
     if program is None:
-        pytest.skip("no Node.js here")
+        lacking("Node.js")
     (folder / "script.js").write_text(script, encoding="utf-8")
     done = subprocess.run([program, "script.js"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr

@@ -31,7 +31,7 @@ def test_a_file_is_kept_as_it_is(records: Records) -> None:
 
 def test_figures_are_those_of_the_file(records: Records) -> None:
     overall = json.loads(RESULT.read_text())["overall"]
-    names = {(name, state) for name, state in records.figure_names("P7")}
+    names = {(each.name, each.state) for each in records.series("P7")}
     for state in ("before", "after"):
         said = {name: value for name, value in overall[state].items() if value is not None}
         assert {name for name, of in names if of == state} == set(said)

@@ -15,12 +15,11 @@ from sqlalchemy import Connection, func, select
 from ulna.control.a3 import interval_test
 from ulna.control.staircase import staircase
 from ulna.ground.errors import UlnaInputError
-from ulna.records import asked
+from ulna.records import asked, chain
 from ulna.records.bench import Bench, checked_text
-from ulna.records.chain import now
 from ulna.records.entry import Entry
+from ulna.records.filed.kind import BAD
 from ulna.records.history import withdrawn
-from ulna.records.impact import BAD
 from ulna.records.registering import chosen
 from ulna.records.tables import CALIBRATION, EQUIPMENT, FIGURE
 from ulna.records.trend import trend
@@ -144,7 +143,7 @@ def decide(
         raise UlnaInputError(f"record: interval of '{name}': got {days:g} days, expected 1 to 36525. Correct it.")
     with bench.writing() as doing:
         row = asked.equipment(doing.connection, name)
-        begins = from_at or _last(doing.connection, str(row["name"])) or now()
+        begins = from_at or _last(doing.connection, str(row["name"])) or chain.now()
         stated: dict[str, Any] = {
             "days": float(days),
             "method": checked_text(method or "as decided", "method"),

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, date, datetime
+from datetime import date
 
 from sqlalchemy import Connection, select
 
-from ulna.records import asked
+from ulna.records import asked, chain
 from ulna.records.tables import CERTIFIED, EQUIPMENT
 
 
@@ -27,7 +27,7 @@ class Due:
 
 def today() -> str:
     """In UTC."""
-    return datetime.now(UTC).date().isoformat()
+    return chain.now()[:10]
 
 
 def due(connection: Connection, on: str) -> list[Due]:

@@ -11,10 +11,9 @@ from sqlalchemy import Connection, select
 from ulna.arm.file import result_file
 from ulna.formats.names import as_text
 from ulna.ground.errors import UlnaInputError
-from ulna.records import asked
+from ulna.records import asked, chain
 from ulna.records.acts.filed import MAIN
 from ulna.records.bench import Bench, Writing, checked_text
-from ulna.records.chain import now
 from ulna.records.filed.kind import FiledKind, in_utc
 from ulna.records.filed.registry import format_of, kind_of
 from ulna.records.registering import keep
@@ -84,7 +83,7 @@ def _ready(bench: Bench, filing: Filing) -> _Ready:
         raise UlnaInputError(f"{path}: was changed while it was read. Try again.")
     beside = {role: keep(bench, each) for role, each in {**read.beside, **filing.with_it}.items()}
     names = {MAIN: as_text(path.name)} | {role: as_text(each.name) for role, each in filing.with_it.items()}
-    at = in_utc(filing.at, "option --at") if filing.at else in_utc(read.at, str(path)) if read.at else now()
+    at = in_utc(filing.at, "option --at") if filing.at else in_utc(read.at, str(path)) if read.at else chain.now()
     stated: dict[str, object] = {"kind": kind.name, "at": at, "names": names, "artefacts": list(filing.artefacts)}
     if said is not None:
         stated["formats"] = {MAIN: said}

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, func, select
 
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.records import asked
@@ -119,10 +119,34 @@ def withdrawn() -> Any:
     return select(STANDING.c.subject).where(STANDING.c.state == WITHDRAWN)
 
 
-def figure_names(connection: Connection, arm: str) -> list[tuple[str, str]]:
-    """(name, state) of all figures of an arm."""
-    asked_for = select(FIGURE.c.name, FIGURE.c.state).where(FIGURE.c.arm == arm).distinct()
-    return sorted((name, state) for name, state in connection.execute(asked_for))
+@dataclass(frozen=True)
+class Series:
+    """A figure that is there over time."""
+
+    name: str
+    state: str
+    artefact: str | None
+    count: int
+    last: str
+    """When the newest is of; ISO 8601, UTC."""
+
+    @property
+    def said(self) -> str:
+        """In words."""
+        of = f" of {self.artefact}" if self.artefact else ""
+        return f"{self.name}{of} ({self.state})"
+
+
+def series(connection: Connection, arm: str) -> list[Series]:
+    """Of an arm, by name, without files that were withdrawn."""
+    columns = FIGURE.c.name, FIGURE.c.state, FIGURE.c.artefact
+    asked_for = (
+        select(*columns, func.count(), func.max(FIGURE.c.at))
+        .where(FIGURE.c.arm == arm, FIGURE.c.sha256.not_in(withdrawn()))
+        .group_by(*columns)
+    )
+    found = [Series(*row) for row in connection.execute(asked_for)]
+    return sorted(found, key=lambda each: (each.name, each.state, each.artefact or ""))
 
 
 def figures(
@@ -141,9 +165,10 @@ def figures(
         asked_for = asked_for.where(FIGURE.c.artefact == artefact)
     found = [_point(row) for row in asked.rows(connection, asked_for)]
     if not found:
-        known = sorted({f"{one} ({other})" for one, other in figure_names(connection, arm)})
-        of = f" of state '{state}'" if state else ""
-        raise UlnaInputError(f"record: no figure '{name}'{of} of '{arm}'.{nearest(name, known)}")
+        known = series(connection, arm)
+        same = [each.said for each in known if each.name == name] or [each.said for each in known]
+        of = (f" ({artefact})" if artefact else "") + (f" in the state '{state}'" if state else "")
+        raise UlnaInputError(f"record: no figure '{name}'{of} of '{arm}'.{nearest(name, same)}")
     return found
 
 

@@ -9,10 +9,10 @@ from sqlalchemy import Connection, select
 
 from ulna.ground.errors import UlnaInputError
 from ulna.records import asked
+from ulna.records.filed.kind import BAD, GOOD, OUT
 from ulna.records.history import Happening, history, withdrawn
 from ulna.records.tables import CERTIFICATE, FIGURE, USED
 
-GOOD, BAD = "pass", "fail"
 _LEFT = ("as-left", "after", "left-out-after")
 """States after an adjustment: they say nothing of what was measured before."""
 
@@ -58,7 +58,7 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
     """The last bad run: when it was good before, when it was first bad, by which figure."""
     asked_for = (
         select(FIGURE)
-        .where(FIGURE.c.arm == arm, FIGURE.c.verdict.in_((GOOD, BAD)), FIGURE.c.state.not_in(_LEFT))
+        .where(FIGURE.c.arm == arm, FIGURE.c.verdict.in_((GOOD, BAD, OUT)), FIGURE.c.state.not_in(_LEFT))
         .where(FIGURE.c.sha256.not_in(withdrawn()))
         .order_by(FIGURE.c.at, FIGURE.c.seq, FIGURE.c.line)
     )
@@ -68,7 +68,7 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
     good, first, why, was_good = since, None, "", True
     last_good = since
     for at, rows in times.items():
-        worst = next((row for row in rows if row["verdict"] == BAD), None)
+        worst = next((row for row in rows if row["verdict"] in (BAD, OUT)), None)
         if worst is None:
             last_good, was_good = at, True
         elif was_good:
@@ -83,7 +83,8 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
 
 def _why(row: asked.Row) -> str:
     limit = "" if row["limit_value"] is None else f", limit {row['limit_value']:g} {row['unit']}"
-    return f"{row['name']} {row['value']:.4g} {row['unit']}{limit} ({row['source']})"
+    out = f", {OUT}" if row["verdict"] == OUT else ""
+    return f"{row['name']} {row['value']:.4g} {row['unit']}{limit}{out} ({row['source']})"
 
 
 def _rests_on(connection: Connection, artefact: str, good: str | None, bad: str) -> list[Happening]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy import Connection, select
@@ -16,9 +16,11 @@ from ulna.ground.errors import UlnaInputError
 from ulna.records import asked, chain
 from ulna.records.acts.setting import NAMES
 from ulna.records.bench import Bench, checked_text
+from ulna.records.filing import ARMS
+from ulna.records.history import calibrations
 from ulna.records.registering import keep, may
 from ulna.records.standing import filed
-from ulna.records.tables import CERTIFICATE, STANDING
+from ulna.records.tables import CERTIFICATE, EQUIPMENT, STANDING
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class Asked:
     """What is to be issued."""
 
     result: str
-    """A filed calibration, by its SHA-256 or the beginning of it."""
+    """A filed calibration, by its SHA-256 or the beginning of it; or an arm, whose last one is meant."""
     laboratory: Path
     verification: Sequence[str] = ()
     """Filed tests, in the same way."""
@@ -57,11 +59,11 @@ def issue(bench: Bench, wanted: Asked) -> IssuedCertificate:
     filed, for a number that was given, and where a second person is needed."""
     with bench.writing() as doing:
         connection = doing.connection
-        sha256, arm = _stands(connection, wanted.result)
+        sha256, arm = _stands(connection, _last(connection, wanted.result) or wanted.result)
         tests = [_of(connection, each, arm) for each in wanted.verification]
         _eyes(connection, bench.by, wanted.approved_by)
         _superseded(connection, wanted)
-        now = datetime.now(UTC)
+        now = datetime.fromisoformat(chain.now())
         number = checked_text(wanted.number, "number") if wanted.number else _next(connection, now.year)
         if connection.scalar(select(CERTIFICATE.c.seq).where(CERTIFICATE.c.number == number)) is not None:
             raise UlnaInputError(
@@ -107,6 +109,17 @@ def _made(bench: Bench, wanted: Asked, result: str, tests: Sequence[str], said: 
             language=wanted.language,
             look=False,
         )
+
+
+def _last(connection: Connection, name: str) -> str | None:
+    """The last calibration of an arm; None of what is no arm. Raises UlnaInputError where it has none."""
+    row = asked.last_of(connection, EQUIPMENT, "name", name)
+    if row is None or row["kind"] not in ARMS:
+        return None
+    made = calibrations(connection, name)
+    if not made:
+        raise UlnaInputError(f"record: '{name}' has no calibration; expected one. File it: ulna record add FILE.")
+    return str(made[-1]["sha256"])
 
 
 def _of(connection: Connection, begins: str, arm: str) -> str:

@@ -20,7 +20,7 @@ from ulna.records.due import Due, due, today
 from ulna.records.entry import Entry
 from ulna.records.filed.kind import in_utc
 from ulna.records.filing import Filed, Filing
-from ulna.records.history import Happening, Point, calibrations, figure_names, figures, history
+from ulna.records.history import Happening, Point, Series, calibrations, figures, history, series
 from ulna.records.impact import Impact, impact
 from ulna.records.issuing import Asked, IssuedCertificate, issue
 from ulna.records.migrate import migrate
@@ -71,10 +71,10 @@ class Records(Shown):
         with self.bench.reading() as connection:
             return figures(connection, asked.equipment(connection, arm)["name"], name, state, artefact)
 
-    def figure_names(self, arm: str) -> list[tuple[str, str]]:
-        """(name, state) of every figure of an arm."""
+    def series(self, arm: str) -> list[Series]:
+        """Every figure of an arm that is there over time."""
         with self.bench.reading() as connection:
-            return figure_names(connection, asked.equipment(connection, arm)["name"])
+            return series(connection, asked.equipment(connection, arm)["name"])
 
     def calibrations(self, arm: str) -> list[dict[str, Any]]:
         """Of an arm, the earliest first, without those that were withdrawn."""

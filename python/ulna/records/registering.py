@@ -11,13 +11,12 @@ from sqlalchemy import Connection
 
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError, nearest
-from ulna.records import asked
+from ulna.records import asked, chain
 from ulna.records.acts import equipment as of_equipment
 from ulna.records.acts import event as of_event
 from ulna.records.acts import person as of_person
 from ulna.records.acts import setting as of_setting
 from ulna.records.bench import Bench, checked_text
-from ulna.records.chain import now
 from ulna.records.entry import Entry
 from ulna.records.filed.kind import in_utc
 from ulna.records.tables import EQUIPMENT
@@ -124,7 +123,7 @@ def happened(
     """An event of equipment; a quarantine, or its end, changes whether it may be used. Raises UlnaInputError."""
     chosen("kind of event", kind, of_event.KINDS)
     text = checked_text(text, "text of an event", 2000)
-    when = in_utc(at, "option --at") if at else now()
+    when = in_utc(at, "option --at") if at else chain.now()
     sha256 = keep(bench, file)
     with bench.writing() as doing:
         row = asked.equipment(doing.connection, name)

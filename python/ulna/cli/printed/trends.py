@@ -13,9 +13,18 @@ from ulna.cli.printed.tables import table
 from ulna.control.drift import Drift
 from ulna.ground.digits import figure_mm
 from ulna.records.advising import Advice
+from ulna.records.history import Series
 from ulna.records.trend import Chart, Trend
 
 _LATEST = 12
+
+
+def series_report(arm: str, found: Sequence[Series]) -> list[RenderableType]:
+    """Which figures there are."""
+    if not found:
+        return [Text(f"No figure of {arm} yet. File what you measured: ulna record add FILE")]
+    rows = [(each.name, each.state, each.artefact or "", each.last[:10], str(each.count)) for each in found]
+    return [table(f"Figures of {arm}", ("figure", "state", "of", "last", "count"), rows, left=4)]
 
 
 def trend_report(found: Trend, everything: bool) -> list[RenderableType]:

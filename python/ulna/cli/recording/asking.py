@@ -133,11 +133,15 @@ def trend(
     Example: [bold]ulna record trend P7 length_error_rms_mm --state as-found[/bold]
     """
     from ulna.cli import output
-    from ulna.cli.printed.trends import trend_document, trend_report
+    from ulna.cli.printed.trends import series_report, trend_document, trend_report
 
     records = opened(where)
     if figure is None:
-        output.print_names("figure", {f"{name} ({of})": "" for name, of in records.figure_names(arm)})
+        known = records.series(arm)
+        if as_json:
+            output.print_json({"arm": arm, "series": [asdict(each) for each in known]})
+        else:
+            output.print_renderable(*series_report(arm, known))
         return
     found = records.trend(
         arm, figure, state=state, artefact=artefact, since=since, limit=limit, guard=guard_band, baseline=baseline

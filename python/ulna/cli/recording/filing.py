@@ -138,7 +138,9 @@ def withdraw(
 def issue(
     result: Annotated[
         str,
-        typer.Argument(metavar="RESULT", help="A filed calibration: its SHA-256's first letters.", show_default=False),
+        typer.Argument(
+            metavar="RESULT", help="An arm: its last calibration; or a SHA-256's beginning.", show_default=False
+        ),
     ],
     laboratory: Annotated[Path, typer.Argument(metavar="LAB", help="The laboratory file (TOML).", show_default=False)],
     out: Annotated[
@@ -165,7 +167,7 @@ def issue(
 ) -> None:
     """Issue a certificate of a filed calibration: numbered, kept, with the head of the record on it, no draft any more.
 
-    Example: [bold]ulna record issue 3f0c88a1 lab.toml -o certificate.pdf[/bold]
+    Example: [bold]ulna record issue P7 lab.toml -o certificate.pdf[/bold]
     """
     from ulna.cli import output
     from ulna.cli.endings import by_ending

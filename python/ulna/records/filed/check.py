@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ulna.checking.result_file import load_check
 from ulna.records.acts.act import Row
-from ulna.records.filed.kind import About, FiledKind, Read, figure
+from ulna.records.filed.kind import BAD, OUT, About, FiledKind, Read, figure
 
 
 class CheckKind(FiledKind):
@@ -23,9 +23,11 @@ class CheckKind(FiledKind):
         return Read(file.arm, file.time, {})
 
     def rows(self, content: bytes, about: About) -> Iterator[Row]:
-        """Each figure of each place."""
+        """Each figure of each place; one that its history contradicts is out of control, whatever its limit says."""
         for found in json.loads(content)["figures"]:
-            place = " ".join([found["test"], *found["of"].values()])
+            history = found["history"] or {}
+            out = found["verdict"] != BAD and history.get("in_control") is False
+            place = " ".join(dict.fromkeys([found["test"], *found["of"].values()]))
             yield figure(
                 about,
                 self.name,
@@ -36,5 +38,5 @@ class CheckKind(FiledKind):
                 u=found["u"],
                 k=found["expanded"] / found["u"] if found["u"] else None,
                 limit_value=found["limit"],
-                verdict=found["verdict"],
+                verdict=OUT if out else found["verdict"],
             )

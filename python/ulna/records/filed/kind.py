@@ -13,6 +13,9 @@ from ulna.ground.errors import UlnaInputError
 from ulna.records.acts.act import Row
 from ulna.records.tables import FIGURE
 
+GOOD, BAD, OUT = "pass", "fail", "out of control"
+"""Verdicts of figures; the last is of the history of a check."""
+
 
 @dataclass(frozen=True)
 class About:
