@@ -299,6 +299,8 @@ DOORS: dict[str, Door] = {
                 ],
                 [
                     "check fossils/protocol-1.toml fossils/protocol-1.csv --date 2030-01-01 --history {file}",
+                    "check fossils/protocol-1.toml fossils/protocol-1.csv --date 2030-01-01 --history {file} "
+                    "--history fossils/checks-1 --json",
                 ],
             ),
             short=12,

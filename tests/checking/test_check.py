@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
 from tests.formats.test_schema import FOLDER, _known
 
 import ulna
-from ulna.checking.advice import ALONE, BOTH, LOOK, NO_OTHER, SLOW, TOUCH, advice
+from ulna.checking.advice import ALONE, BOTH, NO_OTHER, SLOW, advice
 from ulna.checking.result_file import load_check
 from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.verification.kinds.registry import KINDS
@@ -82,6 +83,21 @@ def test_check_1_loads_fits_its_schema_and_is_a_history() -> None:
     assert [list(each) for each in fresh["figures"]] == [list(each) for each in document["figures"]]
 
 
+def test_checks_1_are_the_history_that_check_1_was_judged_by() -> None:
+    """Five mornings; what they say of a baseline must come out forever."""
+    found = ulna.check(PROTOCOL, READINGS, FOSSILS / "checks-1", date="2026-11-12")
+    right = found.figures[-1]
+    assert right.history is not None
+    assert (right.called, right.history.basis.n, right.history.basis.span_days) == ("E_Uni, stick, right", 5, 4.0)
+    values = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) - 5.75
+    half = stats.t.isf(0.005, 4) * values.std(ddof=1) * np.sqrt(1.2)
+    assert 1000.0 * right.history.centre == pytest.approx(values.mean(), abs=1e-6)
+    assert 1000.0 * right.history.upper == pytest.approx(values.mean() + half, abs=1e-6)
+    assert 1000.0 * right.history.lower == pytest.approx(values.mean() - half, abs=1e-6)
+    assert right.history.average == pytest.approx(0.7 * right.history.centre - 0.3 * 0.00575)
+    assert right.history.in_control
+
+
 def test_it_is_the_acceptance_test_of_the_same_touches(tmp_path: Path) -> None:
     """By a profile and a verify file that say the same, in their own words."""
     shutil.copy(READINGS, tmp_path / "t.csv")
@@ -143,6 +159,13 @@ def test_a_history_of_something_else_is_refused(checks: Path, tmp_path: Path) ->
         ulna.check(other, READINGS, FOSSILS / "check-1.json")
     with pytest.raises(UlnaInputError, match=r"date: got 'monday', expected a date"):
         ulna.check(PROTOCOL, READINGS, date="monday")
+    document = json.loads((FOSSILS / "check-1.json").read_text())
+    document["figures"][1]["value"] = 1e300
+    (tmp_path / "far.json").write_text(json.dumps(document))
+    with pytest.raises(
+        UlnaInputError, match=r"far\.json: key 'figures\.2\.value': got 1e\+300, more than any length is"
+    ):
+        ulna.check(PROTOCOL, READINGS, tmp_path / "far.json")
     broken = json.loads((FOSSILS / "check-1.json").read_text()) | {"time": "2026-13-01"}
     (tmp_path / "c.json").write_text(json.dumps(broken))
     with pytest.raises(UlnaInputError, match=r"c\.json: key 'time': got '2026-13-01'"):
@@ -159,12 +182,11 @@ def test_it_does_not_overwrite_what_it_was_made_from(checks: Path) -> None:
 
 
 def test_of_every_kind_of_test_it_is_said_what_to_try() -> None:
-    assert set(TOUCH) == set(LOOK) == set(KINDS)
-    for kind in KINDS:
+    for kind, own in KINDS.items():
         for slow in (False, True):
             steps = advice(kind, slow, {})
-            assert steps[0] == (SLOW if slow else TOUCH[kind])
-            assert steps[1] == LOOK[kind]
+            assert steps[0] == (SLOW if slow else own.again)
+            assert steps[1] == own.look
             assert steps[3] == NO_OTHER
             assert "ulna calibrate" in steps[4]
     assert advice("single-point", False, {"length": True})[3] == BOTH

@@ -200,6 +200,7 @@ SPHERE_TABLE = SPHERE.examples()[0]
     [
         ({"table": Nameless}, r"acceptance test Nameless: its table has no name: write kind: Literal\[…\]"),
         ({"table": Undescribed}, "acceptance test Undescribed: its table has no docstring: say which figures"),
+        ({"look": ""}, "SphereTest: it does not say what to measure again, and what to look at"),
         ({"length_errors": True}, "SphereTest: it draws errors over lengths, but names no words for that: name their"),
         ({"examples": lambda: []}, "'sphere': it has no examples: give a small table of each variant"),
         ({"figures": lambda table: []}, "'sphere': it has no figures: name what it gives, with a formula and a source"),

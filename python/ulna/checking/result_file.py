@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ulna.formats.models import fill
-from ulna.formats.toml import check_format, read_json
+from ulna.formats.toml import MOST, check_format, read_json
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.decision import Verdict
 from ulna.verification.result_file import (
@@ -169,6 +169,12 @@ def load_check(path: Path) -> tuple[CheckFile, datetime, str]:
     document, digest = read_json(path, WHAT)
     check_format(document, path, "ulna-check")
     found = fill(CheckFile, document, path)
+    for number, figure in enumerate(found.figures, start=1):
+        if abs(figure.value) > MOST:
+            raise UlnaInputError(
+                f"{path}: key 'figures.{number}.value': got {figure.value:g}, more than any length is; expected mm, as "
+                "ulna check wrote it. The file was changed or damaged: check again."
+            )
     return found, time_of(found.time, f"{path}: key 'time'"), digest
 
 

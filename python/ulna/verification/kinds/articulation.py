@@ -68,6 +68,8 @@ ARTICULATION = TestKind(
     evaluate=_evaluate,
     limits={"L_Dia": 0.060},
     length_errors=False,
+    again="Touch the ball again in every orientation of the probe.",
+    look="Look at the probe: tight, straight, its ball clean and unworn; an offset shows here first.",
     words=(),
     examples=lambda: [ArticulationTest(kind="articulation", orientations=3, points=5)],
 )

@@ -80,6 +80,8 @@ EFFECTIVE_DIAMETER = TestKind(
     evaluate=_evaluate,
     limits={"Diameter_max": 0.040},
     length_errors=False,
+    again="Touch the ball again, over half of it.",
+    look="Look at the probe's ball, clean and unworn: is it the one that the arm file has?",
     words=(),
     examples=lambda: [DiameterTest(kind="effective-diameter", repeats=3, points=9)],
 )

@@ -48,6 +48,10 @@ class TestKind(Generic[Table]):
     virtual arm plays. {a, b} of one that grows with the length."""
     length_errors: bool
     """Whether its first figure is of errors of lengths, which are drawn over the length."""
+    again: str
+    """What to measure again first, where a check before work finds one of its figures out."""
+    look: str
+    """And what to look at then."""
     words: tuple[str, ...]
     """Keys of the reports' words that only its part of a report needs."""
     examples: Callable[[], Sequence[Table]]
@@ -69,6 +73,8 @@ class TestKind(Generic[Table]):
             yield "its table has no name: write kind: Literal[…], the word for it in a profile"
         if not (self.table.__doc__ or "").strip():
             yield "its table has no docstring: say which figures it gives, and of what"
+        if not (self.again and self.look):
+            yield "it does not say what to measure again, and what to look at, where a check finds it out"
         if self.length_errors and not self.words:
             yield "it draws errors over lengths, but names no words for that: name their keys"
 

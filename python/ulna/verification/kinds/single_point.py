@@ -99,6 +99,8 @@ SINGLE_POINT = TestKind(
     evaluate=_evaluate,
     limits={"SPAT_2S": 0.060},
     length_errors=False,
+    again="Touch the seat again, elbow and wrist moved between touches, the probe pressed lightly.",
+    look="Look at the probe (tight, its ball clean and unworn) and at its seat (clean, does not give way).",
     words=(),
     examples=lambda: [
         SinglePointTest(

@@ -61,6 +61,8 @@ SPHERE = TestKind(
     evaluate=_evaluate,
     limits={"P_Size": 0.040, "P_Form": 0.080},
     length_errors=False,
+    again="Touch the ball again, over half of it.",
+    look="Look at the probe's ball and at the ball of the check: clean, unworn, nothing loose.",
     words=(),
     examples=lambda: [SphereTest(kind="sphere", positions=2, points=9)],
 )

@@ -137,6 +137,8 @@ VOLUMETRIC = TestKind(
     evaluate=_evaluate,
     limits={"Volumetric_max": 0.080, "Volumetric_2S": 0.080},
     length_errors=True,
+    again="Touch the bar again in those places, both ends.",
+    look="Look at the bars: their seats clean, their supports as always, as warm as the protocol says.",
     words=WORDS,
     examples=lambda: [VolumetricTest(kind="volumetric", positions=6, lengths=2, shares=[[0.5, 0.75], [0.8, 1.0]])],
 )
