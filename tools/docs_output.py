@@ -17,6 +17,7 @@ from docs_check import check_outputs
 from docs_errors import error_page
 from docs_plan import plan_table
 from docs_real_readings import real_readings_tables
+from docs_records import year_outputs
 from docs_running import ROOT, reader_folder, ulna
 
 OUTPUT = ROOT / "docs" / "output"
@@ -211,7 +212,8 @@ def filled_readme(text: str) -> str:
 def main() -> None:
     OUTPUT.mkdir(parents=True, exist_ok=True)
     EXAMPLES_OUTPUT.mkdir(parents=True, exist_ok=True)
-    for name, text in (command_outputs(pictures=True) | ways_outputs()).items():
+    year = {name: tidy(text) for name, text in year_outputs().items()}
+    for name, text in (command_outputs(pictures=True) | ways_outputs() | year).items():
         (OUTPUT / name).write_text(text, encoding="utf-8")
     (OUTPUT / "plan-variants.md").write_text(plan_table(), encoding="utf-8")
     (OUTPUT / "which-artefact.md").write_text(artefact_table(), encoding="utf-8")

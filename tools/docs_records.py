@@ -55,6 +55,8 @@ YEAR: list[tuple[str, str, str]] = [
         )
         for day in ("02", "04", "06", "09", "11", "13", "16", "18")
     ),
+    ("2026-11-17", "", "measure out/2026/result.json examples/platinum/check-bars.csv -o out/housing-17.csv"),
+    ("2026-11-17", "", "record add out/housing-17.csv --arm P7 --at 2026-11-17T14:20"),
     ("2026-11-18", "year-trend.txt", 'record trend P7 E_Uni --artefact "bar front"'),
     ("2026-11-18", "", 'record event P7 quarantine "the check before work is out of control"'),
     ("2026-11-18", "year-impact.txt", "record impact P7"),
@@ -83,7 +85,7 @@ YEAR: list[tuple[str, str, str]] = [
     ("2026-11-30", "year-verify.txt", "record verify"),
     ("2026-11-30", "year-backup.txt", "record backup out/backups"),
 ]
-_HASH = re.compile(r"\b(?=[0-9a-f]*[a-f])(?=[0-9a-f]*[0-9])[0-9a-f]{8,64}\b")
+_HASH = re.compile(r"(?<=\()[0-9a-f]{8}(?=\))|[0-9a-f]{12}(?=…|\.zip)|\b[0-9a-f]{64}\b")
 
 
 @contextmanager

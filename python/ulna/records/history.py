@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from sqlalchemy import Connection, func, select
@@ -52,7 +52,10 @@ class Point:
 def history(connection: Connection, name: str) -> list[Happening]:
     """Everything of one thing, the earliest first. Raises UlnaInputError where it is not registered."""
     row = asked.equipment(connection, name)
-    found = [_happening(entry) for entry in walk(connection, subject=row["name"])]
+    own = [
+        _without_what_stayed(entry, earlier) for entry, earlier in _with_earlier(walk(connection, subject=row["name"]))
+    ]
+    found = [_happening(entry) for entry in own if entry is not None]
     found += [
         _happening(entry)
         for act in ("issued", "standing")
@@ -60,6 +63,22 @@ def history(connection: Connection, name: str) -> list[Happening]:
         if entry.stated.get("arm") == row["name"] and entry.subject != row["name"]
     ]
     return sorted(found, key=lambda each: (each.at, each.seq))
+
+
+def _with_earlier(entries: Iterable[Entry]) -> Iterator[tuple[Entry, Entry | None]]:
+    """Each entry, and the one before it that said how the equipment is."""
+    earlier = None
+    for entry in entries:
+        yield entry, earlier
+        earlier = entry if entry.act == "equipment" else earlier
+
+
+def _without_what_stayed(entry: Entry, earlier: Entry | None) -> Entry | None:
+    """Of how equipment is, what is new; None where an event said it already, and that is all."""
+    if entry.act != "equipment" or earlier is None:
+        return entry
+    new = {key: value for key, value in entry.stated.items() if earlier.stated.get(key) != value}
+    return replace(entry, stated=new) if set(new) - {"state"} else None
 
 
 def _happening(entry: Entry) -> Happening:
@@ -81,7 +100,7 @@ def _filed(entry: Entry) -> str:
 def _equipment(entry: Entry) -> str:
     said = {key: value for key, value in entry.stated.items() if key not in ("kind", "state", "names")}
     details = ", ".join(f"{key} {value}" for key, value in said.items())
-    return f"{entry.stated['kind']}, {entry.stated['state']}" + (f": {details}" if details else "")
+    return ", ".join(each for each in (entry.stated.get("kind"), entry.stated.get("state"), details) if each)
 
 
 def _certified(entry: Entry) -> str:

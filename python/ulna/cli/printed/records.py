@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,6 +16,9 @@ from ulna.records.impact import Impact
 from ulna.records.verify import Verified
 
 _LATEST = 30
+_NARROWEST = 24
+_GAPS = 8
+"""Between the columns of a table."""
 _MOST_WRONG = 40
 
 
@@ -27,21 +31,34 @@ def listed_report(found: Sequence[Mapping[str, Any]]) -> list[RenderableType]:
     return [table("", names, rows, left=len(names))]
 
 
-def history_report(name: str, found: Sequence[Happening], everything: bool) -> list[RenderableType]:
-    """By day; a text that is too long for the line runs over."""
+def history_report(name: str, found: Sequence[Happening], everything: bool, columns: int) -> list[RenderableType]:
+    """By day; columns: of the terminal."""
     shown = found if everything else found[-_LATEST:]
     parts: list[RenderableType] = []
     if len(shown) < len(found):
         parts.append(Text(f"{len(found) - len(shown)} earlier: --all."))
-    return [*parts, *_lines(name, shown)]
+    return [*parts, *_lines(name, shown, columns)]
 
 
-def _lines(title: str, found: Sequence[Happening]) -> list[RenderableType]:
+def _lines(title: str, found: Sequence[Happening], columns: int) -> list[RenderableType]:
+    """A row each; a text that is longer than there is room for goes on below."""
     rows = [
         (each.at[:10], each.what, each.text if each.sha256 is None else f"{each.text} ({each.sha256[:8]})", each.by)
         for each in found
     ]
-    return [table(title, ("day", "", "", "by"), rows, left=4)]
+    others = sum(max((len(row[k]) for row in rows), default=0) for k in (1, 3)) + len("2026-11-30") + _GAPS
+    room = max(columns - others, _NARROWEST)
+    broken = [
+        (*((day, what) if first else ("", "")), line, by if first else "")
+        for day, what, text, by in rows
+        for first, line in _broken(text, room)
+    ]
+    return [table(title, ("day", "", "", "by"), broken, left=4)]
+
+
+def _broken(text: str, room: int) -> list[tuple[bool, str]]:
+    lines = textwrap.wrap(text, room) or [""]
+    return [(k == 0, line) for k, line in enumerate(lines)]
 
 
 def due_report(found: Sequence[Due]) -> list[RenderableType]:
@@ -55,13 +72,13 @@ def due_report(found: Sequence[Due]) -> list[RenderableType]:
     return [table("", ("name", "kind", "state", "why", "due", "days"), rows, left=4)]
 
 
-def impact_report(found: Impact) -> list[RenderableType]:
+def impact_report(found: Impact, columns: int) -> list[RenderableType]:
     """From when to when, what, and which certificates."""
     good = "never found good before" if found.good is None else f"good on {found.good[:10]}"
     parts: list[RenderableType] = [Text(f"{found.name}: {good}, bad on {found.bad[:10]}: {found.why}.")]
     if not found.touched:
         return [*parts, Text("Nothing was filed or issued meanwhile.")]
-    parts += ["", *_lines("Meanwhile", found.touched)]
+    parts += ["", *_lines("Meanwhile", found.touched, columns)]
     said = ", ".join(found.certificates) or "none"
     return [*parts, Text(f"Certificates that rest on it: {said}.")]
 

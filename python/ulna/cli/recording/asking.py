@@ -30,7 +30,7 @@ def history(name: Name, everything: All = False, where: Where = None, as_json: J
     if as_json:
         output.print_json({"name": name, "history": [asdict(each) for each in found]})
     else:
-        output.print_renderable(*history_report(name, found, everything))
+        output.print_renderable(*history_report(name, found, everything, output.columns()))
 
 
 @guard
@@ -97,7 +97,7 @@ def impact(name: Name, since: Since = None, until: Until = None, where: Where = 
     if as_json:
         output.print_json(asdict(found))
     else:
-        output.print_renderable(*impact_report(found))
+        output.print_renderable(*impact_report(found, output.columns()))
 
 
 @guard

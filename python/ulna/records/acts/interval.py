@@ -16,4 +16,4 @@ def rows(entry: Entry, files: Store) -> Iterator[Row]:
     yield INTERVAL, {"equipment": entry.subject, **{name: entry.stated.get(name) for name in names}}
 
 
-ACT = Act("interval", "set", rows)
+ACT = Act("interval", "interval", rows)
