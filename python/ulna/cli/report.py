@@ -44,8 +44,8 @@ def report(
         Path | None, typer.Option("--evaluation", metavar="FILE", help="An evaluation.json: readings held out.")
     ] = None,
     verification: Annotated[
-        Path | None,
-        typer.Option("--verification", metavar="FILE", help="A verification.json: the acceptance test, MPE."),
+        list[Path] | None,
+        typer.Option("--verification", metavar="FILE", help="A verification.json: the test, MPE; may be repeated."),
     ] = None,
     laboratory: Annotated[
         Path | None,
@@ -90,7 +90,8 @@ def report(
     with output.progress_bar() as progress:
         content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
     files = [result / "result.json" if result.is_dir() else result]
-    files += [path for path in (study, cross_validation, evaluation, laboratory, verification) if path is not None]
+    files += [path for path in (study, cross_validation, evaluation, laboratory) if path is not None]
+    files += verification or []
     write_report(content, wanted, language, files, force, fonts)
     if as_json:
         output.print_json(
