@@ -98,7 +98,7 @@ def _as_in_the_year(folder: Path) -> Iterator[mock.Mock]:
 
 def year_outputs() -> dict[str, str]:
     """File name → what the command prints, the prompt's line first. Raises RuntimeError where one cannot be used."""
-    found = {}
+    found, others = {}, _Others()
     with reader_folder() as folder, _as_in_the_year(folder) as clock:
         for hour, (day, name, command) in enumerate(YEAR):
             clock.return_value = f"{day}T{8 + hour // 10:02}:{hour % 60:02}:00.000000+00:00"
@@ -107,10 +107,16 @@ def year_outputs() -> dict[str, str]:
                 raise RuntimeError(f"ulna {command} exited with {done.returncode}:\n{done.stderr}")
             if name:
                 said = (done.stdout + done.stderr).replace(f"{folder}/", "/home/jan/").replace(str(folder), "/home/jan")
-                found[name] = _HASH.sub(_another, said)
+                found[name] = _HASH.sub(others, said)
     return found
 
 
-def _another(found: re.Match[str]) -> str:
-    """A hash of the same length; the same for the same beginning would need a memory, and nobody compares them."""
-    return hashlib.sha256(str(len(found[0])).encode()).hexdigest()[: len(found[0])]
+class _Others:
+    """Hashes of the same length, the same for the same beginning, in the order in which they appear."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, int] = {}
+
+    def __call__(self, found: re.Match[str]) -> str:
+        number = self._known.setdefault(found[0][:8], len(self._known))
+        return hashlib.sha256(str(number).encode()).hexdigest()[: len(found[0])]
