@@ -15,8 +15,11 @@ from pathlib import Path
 
 from ulna.records.bench import Bench
 from ulna.records.filing import Filing, file_all
+from ulna.records.issuing import Asked, issue
 from ulna.records.rebuild import rebuild
 from ulna.records.registering import happened
+
+LABORATORY = Path(__file__).resolve().parents[2] / "examples" / "platinum" / "laboratory.toml"
 
 
 def content(number: int) -> bytes:
@@ -42,6 +45,14 @@ def events(folder: Path, first: int) -> None:
         print(number, flush=True)
 
 
+def issues(folder: Path, first: int) -> None:
+    """Certificates of the last calibration."""
+    bench = Bench.open(folder, "writer")
+    for number in range(first, first + 1000):
+        issue(bench, Asked("P7", LABORATORY, number=f"certificate {number}", form="dcc"))
+        print(number, flush=True)
+
+
 def rebuilds(folder: Path, first: int) -> None:
     """The whole index anew, again and again."""
     bench = Bench(folder, "writer")
@@ -53,8 +64,11 @@ def kill(folder: Path, files: Path, act: str, times: int, seed: int) -> None:
     """Each child is killed somewhere in its first moments; what it said before is true."""
     rng = random.Random(seed)
     acts = {"add": lambda first: add(folder, files, first, 1000), "event": lambda first: events(folder, first)}
+    acts["issue"] = lambda first: issues(folder, first)
     acts["rebuild"] = lambda first: rebuilds(folder, first)
     add(folder, files, 500, 1)  # what is loaded on the way is loaded now
+    if act == "issue":
+        issue(Bench.open(folder, "writer"), Asked("P7", LABORATORY, number="first", form="dcc"))
     for k in range(times):
         child = os.fork()
         if child == 0:
