@@ -14,7 +14,10 @@ from ulna.records.acts.registry import ACTS
 from ulna.records.acts.standing import WITHDRAWN
 from ulna.records.chain import walk
 from ulna.records.entry import Entry
-from ulna.records.tables import CALIBRATION, FIGURE, STANDING
+from ulna.records.tables import CALIBRATION, FIGURE, PARAMETER, STANDING
+
+PARAMETERS = "parameter"
+"""What stands for the state of a parameter's values over time."""
 
 
 @dataclass(frozen=True)
@@ -171,8 +174,8 @@ def series(connection: Connection, arm: str) -> list[Series]:
 def figures(
     connection: Connection, arm: str, name: str, state: str | None = None, artefact: str | None = None
 ) -> list[Point]:
-    """A figure of an arm over time, the earliest first, without files that were withdrawn. Raises UlnaInputError where
-    there is none."""
+    """A figure of an arm, or a parameter of its calibrations, over time, the earliest first, without files that were
+    withdrawn. Raises UlnaInputError where there is none."""
     asked_for = (
         select(FIGURE)
         .where(FIGURE.c.arm == arm, FIGURE.c.name == name, FIGURE.c.sha256.not_in(withdrawn()))
@@ -183,12 +186,41 @@ def figures(
     if artefact is not None:
         asked_for = asked_for.where(FIGURE.c.artefact == artefact)
     found = [_point(row) for row in asked.rows(connection, asked_for)]
+    if not found and artefact is None and state in (None, PARAMETERS):
+        found = _of_parameter(connection, arm, name)
     if not found:
         known = series(connection, arm)
         same = [each.said for each in known if each.name == name] or [each.said for each in known]
         of = (f" ({artefact})" if artefact else "") + (f" in the state '{state}'" if state else "")
         raise UlnaInputError(f"record: no figure '{name}'{of} of '{arm}'.{nearest(name, same)}")
     return found
+
+
+def _of_parameter(connection: Connection, arm: str, name: str) -> list[Point]:
+    """Of calibrations that converged and determined it."""
+    asked_for = (
+        select(PARAMETER)
+        .join(CALIBRATION, CALIBRATION.c.seq == PARAMETER.c.seq)
+        .where(PARAMETER.c.arm == arm, PARAMETER.c.name == name, PARAMETER.c.status == "fitted")
+        .where(CALIBRATION.c.converged, PARAMETER.c.sha256.not_in(withdrawn()))
+        .order_by(PARAMETER.c.at, PARAMETER.c.seq)
+    )
+    return [
+        Point(
+            row["at"],
+            row["value"],
+            row["unit"],
+            row["u"],
+            None,
+            None,
+            None,
+            PARAMETERS,
+            PARAMETERS,
+            None,
+            row["sha256"],
+        )
+        for row in asked.rows(connection, asked_for)
+    ]
 
 
 def _point(row: asked.Row) -> Point:

@@ -11,9 +11,9 @@ from rich.text import Text
 
 from ulna.cli.printed.tables import table
 from ulna.control.drift import Drift
-from ulna.ground.digits import figure_mm
+from ulna.ground.digits import figure_mm, quantity
 from ulna.records.advising import Advice
-from ulna.records.history import Series
+from ulna.records.history import Point, Series
 from ulna.records.trend import Chart, Trend
 
 _LATEST = 12
@@ -38,8 +38,8 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
             each.source,
             each.verdict or "",
             "outside" if k in outside else "",
-            figure_mm(each.value),
-            "-" if each.u is None else figure_mm(each.u),
+            _number(each.value, each),
+            "-" if each.u is None else _number(each.u, each),
         )
         for k, each in enumerate(points, start=first)
     ]
@@ -50,17 +50,24 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
     parts += ["", Text(f"Drift: {found.drift.said}")]
     if found.until is not None:
         parts.append(Text(f"Limit: {found.until.reason}"))
-    parts.append(Text(f"Chart: {_chart(found.chart)}"))
+    parts.append(Text(f"Chart: {_chart(found.chart, found.points[-1])}"))
     if found.breaks:
         parts.append(Text(f"Meanwhile: {'; '.join(found.breaks)}. With --since DAY only what came after."))
     return parts
 
 
-def _chart(chart: Chart) -> str:
+def _number(value: float, of: Point) -> str:
+    """A figure in mm; a parameter in its unit, as its u has it."""
+    if of.unit == "mm" or of.u is None:
+        return figure_mm(value)
+    return quantity(value, of.u, of.unit)
+
+
+def _chart(chart: Chart, of: Point) -> str:
     limits = chart.limits
     if limits.lower is None or limits.upper is None:
         return f"{limits.basis.said}; nothing is said of control."
-    said = f"limits {figure_mm(limits.lower)} to {figure_mm(limits.upper)}, of the first {chart.baseline}"
+    said = f"limits {_number(limits.lower, of)} to {_number(limits.upper, of)}, of the first {chart.baseline}"
     if chart.in_control:
         return f"{said}: in control."
     found = []
