@@ -106,7 +106,7 @@ def year_outputs() -> dict[str, str]:
             if done.returncode not in (0, 1) and name != "year-refused.txt":
                 raise RuntimeError(f"ulna {command} exited with {done.returncode}:\n{done.stderr}")
             if name:
-                said = (done.stdout + done.stderr).replace(f"{folder}/", "/home/jan/").replace(str(folder), "/home/jan")
+                said = (done.stdout + done.stderr).replace(f"{folder}/", "/srv/").replace(str(folder), "/srv")
                 found[name] = _HASH.sub(others, said)
     return found
 

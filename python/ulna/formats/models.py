@@ -226,7 +226,10 @@ def _tagged(annotation: Any, tag: str) -> list[Any]:
     if typing.get_origin(annotation) is typing.Annotated:
         inner, *notes = typing.get_args(annotation)
         registered = [note.tables[tag[1:-1]] for note in notes if isinstance(note, OneOf) and tag[1:-1] in note.tables]
-        return registered or ([inner] if Tag(tag) in notes else _tagged(inner, tag))
+        if registered or Tag(tag) not in notes:
+            return registered or _tagged(inner, tag)
+        others = [note for note in notes if note != Tag(tag)]
+        return [typing.Annotated[(inner, *others)] if others else inner]
     if typing.get_origin(annotation) in (list, dict):
         return []
     return [inner for each in typing.get_args(annotation) for inner in _tagged(each, tag)]
