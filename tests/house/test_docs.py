@@ -15,7 +15,7 @@ def tools(root):
     try:
         yield {
             name: importlib.import_module(name)
-            for name in ("docs_arm_pictures", "docs_output", "docs_errors", "docs_real_readings")
+            for name in ("docs_arm_pictures", "docs_output", "docs_errors", "docs_real_readings", "docs_records")
         }
     finally:
         sys.path.remove(str(root / "tools"))
@@ -32,8 +32,15 @@ def test_the_comparison_sees_what_it_should():
 def test_outputs_of_commands(root, tools):
     printed = tools["docs_output"].command_outputs()
     shown = {path.name for path in (root / "docs" / "output").glob("*.txt")}
-    assert shown == set(printed) | set(tools["docs_output"].WAYS)
+    of_the_year = {name for _, name, _ in tools["docs_records"].YEAR if name}
+    assert shown == set(printed) | set(tools["docs_output"].WAYS) | of_the_year
     for name, text in printed.items():
+        assert same((root / "docs" / "output" / name).read_text(encoding="utf-8"), text) == [], name
+
+
+@pytest.mark.timeout(900)  # a whole year
+def test_the_laboratory_s_year(root, tools):
+    for name, text in tools["docs_records"].year_outputs().items():
         assert same((root / "docs" / "output" / name).read_text(encoding="utf-8"), text) == [], name
 
 

@@ -47,6 +47,10 @@ def report(
         list[Path] | None,
         typer.Option("--verification", metavar="FILE", help="A verification.json: the test, MPE; may be repeated."),
     ] = None,
+    earlier: Annotated[
+        Path | None,
+        typer.Option("--earlier", metavar="RESULT", help="A calibration of the same arm: what has moved since."),
+    ] = None,
     laboratory: Annotated[
         Path | None,
         typer.Option("--lab", metavar="LAB", help="The laboratory file (TOML): see ulna certificate --make-lab."),
@@ -88,9 +92,11 @@ def report(
     wanted = targets(out, formats or ["html"], force)
     kept = recording(to_record, out)
     with output.progress_bar() as progress:
-        content = gather(result, study, cross_validation, evaluation, laboratory, verification, progress)
+        content = gather(
+            result, study, cross_validation, evaluation, laboratory, verification, progress, earlier=earlier
+        )
     files = [result / "result.json" if result.is_dir() else result]
-    files += [path for path in (study, cross_validation, evaluation, laboratory) if path is not None]
+    files += [path for path in (study, cross_validation, evaluation, earlier, laboratory) if path is not None]
     files += verification or []
     write_report(content, wanted, language, files, force, fonts)
     if as_json:

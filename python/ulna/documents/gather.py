@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from ulna.calibration.evaluate import study_of_arm
 from ulna.calibration.given import ResultLike
+from ulna.comparison.compare import compare
 from ulna.documents.content.acceptance import verification
 from ulna.documents.content.artefacts import artefact_rows
 from ulna.documents.content.clouds import clouds
@@ -53,6 +54,7 @@ def gather(
     progress: Progress | None = None,
     issued: Issued | None = None,
     look: bool = True,
+    earlier: ResultLike | None = None,
 ) -> Content:
     """All that a report of this calibration says. Raises UlnaInputError for files that cannot be used.
 
@@ -61,7 +63,7 @@ def gather(
     held out. laboratory: who calibrated for whom, with what. verified: what `ulna verify` wrote, as found and as left
     in one file or in two. progress is called with (stage, done, total). issued: that the certificate was issued, which
     takes a laboratory file and a calibration that converged. look: for a study that nobody named, by its path in the
-    result.
+    result. earlier: a calibration of the same arm, to say what has moved since.
     """
 
     def at(done: int) -> None:
@@ -108,6 +110,7 @@ def gather(
         extras=found.extras,
         chosen=found.chosen,
         residual_map=found.residual_map,
+        moved=None if earlier is None else compare(earlier, result).steps[0],
         verification=verification(tested, None if named is None else named.value.file),
         laboratory=None if named is None else named.value,
         issued=issued,

@@ -16,6 +16,7 @@ from ulna.calibration.identify import Identification
 from ulna.calibration.placements import PlacementFigures
 from ulna.calibration.residual_map import ResidualMap
 from ulna.calibration.summary import FitSummary
+from ulna.comparison.compare import Compared
 from ulna.documents.content.acceptance import Verification
 from ulna.documents.content.artefacts import ArtefactRow
 from ulna.documents.content.clouds import Cloud, Quiver
@@ -66,6 +67,8 @@ class Content:
     chosen: ChosenModel | None
     residual_map: ResidualMap | None
     """Where the study left the blocks to Ulna."""
+    moved: Compared | None
+    """Since an earlier calibration, where one was named."""
     verification: Verification | None
     """The acceptance test, where one was given."""
     laboratory: Laboratory | None

@@ -72,6 +72,8 @@ LOOKS = {
     "tried": " tall",
     "mapped": "",
     "files": "",
+    "moved-lengths": "",
+    "moved-parameters": " tall",
 }
 
 

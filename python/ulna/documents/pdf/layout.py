@@ -44,6 +44,14 @@ LAYOUTS: dict[str, Layout] = {
         | _shares(1, "parameters-more", "lengths-u", "prior-u", "left-out", "worse", "u-worse"),
         size_pt=7.5,
     ),
+    "moved-lengths": Layout(
+        {
+            "lengths": 1.2,
+            "how-many": 0.8,
+            **_shares(1, "change-rms", "change-largest", "change-expanded", "change-share"),
+        }
+    ),
+    "moved-parameters": Layout({"parameter": 2, "unit": 0.8, **_shares(1, "change", "u", "change-ratio")}),
     "mapped": Layout({"map-joint": 0.6, "follows": 1.2, **_shares(1, "map-share", "u-worse", "amplitude")}),
     "outliers": Layout(
         {"row": 0, "file": 1.5, **_shares(1, "artefact", "placement", "probe"), "size": 0, "times": 1, "counted": 0.9},

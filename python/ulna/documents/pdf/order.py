@@ -18,6 +18,7 @@ from ulna.documents.sections import (
     laboratory,
     lacking,
     method,
+    moved,
     parameters,
     plots,
     provenance,
@@ -107,6 +108,7 @@ def _fitted(content: Content, words: Words) -> list[Part]:
         _part("quality", words, [*quality.quality(content, words), *plots.before_after(content, words)]),
         _part("verification", words, single),
         _part("determined", words, determined.determined(content, words) if found_out else []),
+        _part("moved", words, moved.moved(content, words)),
         _part("extras", words, extras.extras(content, words)),
         Part(words("parameters.cylindrical"), parameters.cylindrical(content, words)),
     ]
