@@ -99,6 +99,8 @@ def test_what_needs_more_says_which_extra(result: Path, tmp_path: Path) -> None:
         ("search", ["calibrate", study, "-o", out]),
         ("tables", ["measure", tmp_path / "arm.toml", tmp_path / "q.h5"]),
         ("tables", ["measure", tmp_path / "arm.toml", EXAMPLES / "bars.csv", "-o", tmp_path / "out.parquet"]),
+        ("records", ["record", "init", out]),
+        ("records", ["calibrate", EXAMPLES / "study.toml", "-o", out, "--record", "P7"]),
         ("dask", ["batch", EXAMPLES, "--dask", "tcp://127.0.0.1:1", "-o", out]),
     ):
         done = bare(*arguments)
@@ -116,7 +118,7 @@ def test_pictures_of_a_test_need_reports_and_leave_nothing(result: Path, tmp_pat
     assert sorted(path.name for path in tmp_path.iterdir()) == ["test"]
 
 
-def test_no_module_but_those_that_draw_needs_an_extra() -> None:
+def test_no_module_but_those_that_draw_or_keep_records_needs_an_extra() -> None:
     code = WITHOUT + (
         "import importlib, pkgutil, ulna\n"
         "for each in pkgutil.walk_packages(ulna.__path__, 'ulna.'):\n"
@@ -128,10 +130,16 @@ def test_no_module_but_those_that_draw_needs_an_extra() -> None:
     needy = dict(line.split() for line in done.stdout.splitlines())
     draws = re.compile(
         r"ulna\.ground\.style|ulna\.[\w.]+\.plots?|ulna\.documents\.(pdf|drawn|work_sheet)(\.\w+)?|ulna\.documents\.plotted|"
-        r"ulna\.formats\.tables\.(arrow|hdf5_apart)"
+        r"ulna\.formats\.tables\.(arrow|hdf5_apart)|ulna\.records(\.\w+)*|ulna\.cli\.printed\.(records|trends)"
     )
     assert [name for name in needy if not draws.fullmatch(name)] == []
-    assert {package.split(".")[0] for package in needy.values()} <= {"matplotlib", "pyarrow", "h5py"}
+    assert {package.split(".")[0] for package in needy.values()} <= {
+        "matplotlib",
+        "pyarrow",
+        "h5py",
+        "sqlalchemy",
+        "alembic",
+    }
 
 
 def test_the_extras_are_those_of_the_project(root: Path) -> None:
