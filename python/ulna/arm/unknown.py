@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -57,4 +58,9 @@ def why_unknown(fit: Mapping[str, Any]) -> Unknown:
 
 def _number(fit: Mapping[str, Any], key: str) -> float:
     value = fit.get(key)
-    return float(value) if isinstance(value, int | float) else 0.0
+    if not isinstance(value, int | float):
+        return 0.0
+    try:
+        return float(value)
+    except OverflowError:  # an integer of hundreds of digits, which no calibration counts
+        return math.inf

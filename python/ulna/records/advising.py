@@ -148,11 +148,21 @@ def decide(
             "days": float(days),
             "method": checked_text(method or "as decided", "method"),
             "from_at": begins,
-            "due_at": (datetime.fromisoformat(begins) + timedelta(days=days)).isoformat(),
+            "due_at": _after(name, begins, days),
         }
         return doing.add(
             "interval", str(row["name"]), stated | ({"why": checked_text(why, "why", 2000)} if why else {})
         )
+
+
+def _after(name: str, begins: str, days: float) -> str:
+    try:
+        return (datetime.fromisoformat(begins) + timedelta(days=days)).isoformat()
+    except OverflowError:
+        raise UlnaInputError(
+            f"record: interval of '{name}': {days:g} days from {begins[:10]} are after the year 9999; expected an "
+            "earlier day. Withdraw what was filed of that day."
+        ) from None
 
 
 def _last(connection: Connection, name: str) -> str | None:

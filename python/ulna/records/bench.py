@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import getpass
 import os
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -12,11 +13,11 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from ulna.ground.errors import UlnaInputError
+from ulna.ground.errors import InputWarning, UlnaInputError
 from ulna.records import chain
-from ulna.records.database import Database
+from ulna.records.database import Database, check_server
 from ulna.records.entry import Entry
-from ulna.records.place import FILES, LINKS, WHO, bench_file, found, make_folder, settings, url_of
+from ulna.records.place import FILES, LINKS, WHO, bench_file, found, make_folder, settings, unmade, url_of
 from ulna.records.schema import check_schema, upgrade
 from ulna.records.store import Store
 
@@ -46,7 +47,10 @@ class Bench:
         """Opens nothing yet but `bench.toml`. Raises UlnaInputError."""
         self.folder = folder
         self.by = _checked(by or os.environ.get(WHO) or settings().by or _login())
-        self.database = Database(url_of(folder, bench_file(folder)))
+        file = bench_file(folder)
+        if file.database is not None:
+            check_server(file.database)
+        self.database = Database(url_of(folder, file))
         self.files = Store(folder / FILES)
         self.links = Store(folder / LINKS)
 
@@ -54,8 +58,18 @@ class Bench:
     def make(cls, folder: Path, database: str | None = None, by: str | None = None) -> Bench:
         """A new record. Raises UlnaInputError where there is something already."""
         if database is not None:
-            Database(database)  # a URL of something else is said before anything is made
+            check_server(database)  # a URL of something else is said before anything is made
+        there = folder.exists()
         make_folder(folder, database)
+        try:
+            return cls._empty(folder, by)
+        except BaseException:
+            unmade(folder, there)
+            raise
+
+    @classmethod
+    def _empty(cls, folder: Path, by: str | None) -> Bench:
+        """With the tables of a record. Raises UlnaInputError where the database has some."""
         bench = cls(folder, by)
         with bench.database.writing() as connection:
             from sqlalchemy import inspect
@@ -90,8 +104,16 @@ class Bench:
             chain.settle(connection, self.links)
             doing = Writing(connection, self)
             yield doing
-        for entry in doing.entries:
-            self.links.put(entry.text.encode())
+        try:
+            for entry in doing.entries:
+                self.links.put(entry.text.encode())
+        except OSError as error:
+            warnings.warn(
+                f"{self.links.folder}: entry {doing.entries[-1].seq} is in the database, its file could not be written "
+                f"({error.strerror or error}). Do not repeat it: the next that writes makes the file.",
+                InputWarning,
+                stacklevel=2,
+            )
 
 
 def _login() -> str:

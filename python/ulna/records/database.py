@@ -22,6 +22,8 @@ _BEGIN_WRITING = {
     "sqlite": ("BEGIN IMMEDIATE",),
     "postgresql": ("BEGIN", f"SET LOCAL lock_timeout = '{WAIT_S:.0f}s'", f"SELECT pg_advisory_xact_lock({_LOCK})"),
 }
+_BROKEN = ("malformed", "not a database", "no UTF-8")
+"""What SQLite says of a file that is damaged."""
 _BUSY = ("database is locked", "database is busy", "lock timeout")
 
 
@@ -52,6 +54,11 @@ def _checked(url: str) -> URL:
             f"database {_shown(url)}: a database of kind '{backend}'; expected postgresql://user@host/name, or none: "
             "then it is SQLite in the folder."
         )
+    if made.query:
+        raise UlnaInputError(
+            f"database {_shown(url).split('?')[0]}: options behind a question mark; expected "
+            "postgresql://user@host/name alone. Leave them out."
+        )
     return made
 
 
@@ -64,6 +71,15 @@ def _set_up(connection: sqlite3.Connection, _: Any) -> None:
     """On the disk before it is said to be done; readers beside the one that writes."""
     for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
         connection.execute(f"PRAGMA {pragma}")
+
+
+def check_server(url: str) -> None:
+    """Raises UlnaInputError for what is no server: a record's own SQLite is in its folder, and no other is opened."""
+    if _checked(url).get_backend_name() != "postgresql":
+        raise UlnaInputError(
+            f"database {_shown(url)}: a file; expected postgresql://user@host/name, or none: then it is SQLite in the "
+            "folder."
+        )
 
 
 class Database:
@@ -112,6 +128,10 @@ class Database:
             if not self.sqlite or isinstance(error.orig, sqlite3.DatabaseError):
                 raise self._unusable(error) from None
             raise
+        except UnicodeDecodeError:  # SQLite's own words about a damaged file quote what is in it
+            if not self.sqlite:
+                raise
+            raise self._damaged("its text is no UTF-8") from None
 
     def _unusable(self, error: DBAPIError) -> UlnaInputError:
         said = " ".join(_words(error).split())[:200]
@@ -119,7 +139,17 @@ class Database:
             return UlnaInputError(
                 f"database {_shown(self.url)}: another program has been writing to it for {WAIT_S:.0f} s. Try again."
             )
-        return UlnaInputError(f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole.")
+        return self._damaged(said)
+
+    def _damaged(self, said: str) -> UlnaInputError:
+        hint = (
+            " If its files are whole: ulna record rebuild."
+            if self.sqlite and any(each in said for each in _BROKEN)
+            else ""
+        )
+        return UlnaInputError(
+            f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole.{hint}"
+        )
 
 
 def _words(error: DBAPIError) -> str:

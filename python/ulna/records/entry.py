@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from ulna.records.store import sha256_of
+from ulna.records.store import is_name, sha256_of
 
 FORMAT = "ulna-entry/1"
 FIRST = ""
@@ -48,10 +48,27 @@ class Entry:
     @classmethod
     def of_text(cls, text: str) -> Entry:
         """As written. Raises ValueError for a text that is no entry."""
-        document = json.loads(text)
-        if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
-            raise ValueError("no entry")
         try:
-            return cls(**document)
-        except TypeError as error:
+            document = json.loads(text)
+            if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
+                raise ValueError("no entry")
+            entry = cls(**document)
+        except (TypeError, RecursionError) as error:
             raise ValueError(str(error)) from None
+        if wrong := entry.wrong():
+            raise ValueError(f"its {wrong} is none")
+        return entry
+
+    def wrong(self) -> str | None:
+        """Which of its parts is not what it must be; None where all are. No file but one by its SHA-256 is ever looked
+        for."""
+        if type(self.seq) is not int or self.seq < 1:
+            return "seq"
+        texts = ("at", "actor", "act", "subject", "previous")
+        if (text := next((name for name in texts if not isinstance(getattr(self, name), str)), None)) is not None:
+            return text
+        if not isinstance(self.stated, dict):
+            return "stated"
+        if not isinstance(self.files, dict) or not all(isinstance(v, str) and is_name(v) for v in self.files.values()):
+            return "files"
+        return None

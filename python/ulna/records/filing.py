@@ -9,14 +9,14 @@ from pathlib import Path
 from sqlalchemy import Connection, select
 
 from ulna.arm.file import result_file
-from ulna.formats.names import as_text
 from ulna.ground.errors import UlnaInputError
 from ulna.records import asked, chain
 from ulna.records.acts.filed import MAIN
 from ulna.records.bench import Bench, Writing, checked_text
-from ulna.records.filed.kind import FiledKind, in_utc
+from ulna.records.filed.kind import About, FiledKind, in_utc
 from ulna.records.filed.registry import format_of, kind_of
-from ulna.records.registering import keep
+from ulna.records.projection import stated_rows
+from ulna.records.registering import content_of, file_name
 from ulna.records.store import sha256_of
 from ulna.records.tables import ENTRY, FILE
 
@@ -73,25 +73,33 @@ class _Ready:
 
 def _ready(bench: Bench, filing: Filing) -> _Ready:
     path = result_file(filing.path)
-    sha256 = keep(bench, path)
-    assert sha256 is not None
-    content = bench.files.get(sha256)
+    content = content_of(path)
+    sha256 = sha256_of(content)
     said = format_of(path, content)
     kind = kind_of(said)
     read = kind.read(path)
-    if sha256_of(path.read_bytes()) != sha256:
+    if content_of(path) != content:
         raise UlnaInputError(f"{path}: was changed while it was read. Try again.")
-    beside = {role: keep(bench, each) for role, each in {**read.beside, **filing.with_it}.items()}
-    names = {MAIN: as_text(path.name)} | {role: as_text(each.name) for role, each in filing.with_it.items()}
-    at = in_utc(filing.at, "option --at") if filing.at else in_utc(read.at, str(path)) if read.at else chain.now()
+    beside = {role: content_of(each) for role, each in {**read.beside, **filing.with_it}.items()}
+    names = {MAIN: file_name(path)} | {role: file_name(each) for role, each in filing.with_it.items()}
+    at = _when(filing, read.at)
     stated: dict[str, object] = {"kind": kind.name, "at": at, "names": names, "artefacts": list(filing.artefacts)}
     if said is not None:
         stated["formats"] = {MAIN: said}
-    files = {MAIN: sha256} | {role: each for role, each in beside.items() if each is not None}
     if filing.arm is None and read.arm is None:
         raise UlnaInputError(f"{path}: does not say of which arm it is; expected that. Give --arm NAME.")
     arm = filing.arm or checked_text(str(read.arm), f"{path}: the arm's name")
+    # what a reader takes and no row can be made of would be a record that nobody can make anew
+    stated_rows(kind.rows(content, About(arm, sha256, at)), str(path))
+    files = {role: bench.files.put(each) for role, each in {MAIN: content, **beside}.items()}
     return _Ready(filing, kind, stated, files, arm)
+
+
+def _when(filing: Filing, said: str | None) -> str:
+    """As whoever files it says, else as the file says, else now."""
+    if filing.at is not None:
+        return in_utc(filing.at, "option --at")
+    return chain.now() if said is None else in_utc(said, f"{filing.path}: its time")
 
 
 def _filed(doing: Writing, ready: _Ready) -> Filed:

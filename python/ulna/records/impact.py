@@ -38,6 +38,8 @@ def impact(connection: Connection, name: str, since: str | None = None, until: s
     """Of an arm between its last good and its first bad figure after it, or between stated times; of an artefact
     between stated times. Times ISO 8601, UTC. Raises UlnaInputError where no figure was bad and no time is stated."""
     row = asked.equipment(connection, name)
+    if since is not None and until is not None and since > until:
+        raise UlnaInputError(f"record: good on {since[:10]}, bad on {until[:10]}; expected good first. Turn them.")
     good, bad, why = since, until, "as stated"
     if row["kind"] == "artefact":
         if until is None:

@@ -18,7 +18,7 @@ from ulna.records.acts.setting import NAMES
 from ulna.records.bench import Bench, checked_text
 from ulna.records.filing import ARMS
 from ulna.records.history import calibrations
-from ulna.records.registering import keep, may
+from ulna.records.registering import file_name, keep, may
 from ulna.records.standing import filed
 from ulna.records.tables import CERTIFICATE, EQUIPMENT, STANDING
 
@@ -77,7 +77,7 @@ def issue(bench: Bench, wanted: Asked) -> IssuedCertificate:
         stated = {
             "arm": arm,
             "issued_at": now.isoformat(),
-            "names": {"certificate": f"{number}.{_ENDINGS[wanted.form]}", "laboratory": wanted.laboratory.name},
+            "names": {"certificate": f"{number}.{_ENDINGS[wanted.form]}", "laboratory": file_name(wanted.laboratory)},
             "approved_by": wanted.approved_by,
             "supersedes": wanted.supersedes,
             "reason": wanted.reason,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
@@ -110,6 +111,15 @@ def make_folder(folder: Path, database: str | None) -> None:
         url_of(folder, file)
     said = f'format = "{FORMAT}"\n' + ("" if database is None else f"database = {toml_value(database)}\n")
     write_file(folder / BENCH, said)
+
+
+def unmade(folder: Path, there: bool) -> None:
+    """Take away what `make_folder` and a database that was not finished left; there: the folder was there before."""
+    with suppress(OSError):
+        for name in (BENCH, DATABASE, f"{DATABASE}-wal", f"{DATABASE}-shm", f"{DATABASE}-journal"):
+            (folder / name).unlink(missing_ok=True)
+        if not there:
+            folder.rmdir()
 
 
 def _kind_of_disk(folder: Path) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from sqlalchemy import Connection, delete, inspect, select, text
@@ -26,21 +26,26 @@ def rebuild(bench: Bench) -> int:
     entries = chained(bench.links)
     _check(bench.files, entries)
     try:
-        _anew(bench, entries)
+        return _anew(bench, entries)
     except UlnaInputError:
         if not bench.database.sqlite or not _aside(bench.folder / DATABASE):
             raise
-        _anew(bench, entries)
-    return len(entries)
+        return _anew(bench, entries)
 
 
-def _anew(bench: Bench, entries: Iterable[Entry]) -> None:
+def _anew(bench: Bench, entries: Sequence[Entry]) -> int:
     with bench.database.writing() as connection:
         newest = _not_in_files(connection, bench.links)
+        if not entries and not newest and next(bench.files.names(), None) is not None:
+            raise UlnaInputError(
+                f"{bench.links.folder}: has no entry, and {bench.files.folder} has files that one must have named; "
+                "expected the files of entries. Restore them from a backup."
+            )
         _drop(connection)
         upgrade(connection)
         for entry in [*entries, *newest]:
             chain.take(connection, bench.files, entry)
+    return len(entries) + len(newest)
 
 
 def index_anew(connection: Connection, files: Store) -> None:

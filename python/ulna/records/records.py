@@ -59,7 +59,8 @@ class Records(Shown):
         """As it is now, by name."""
         with self.bench.reading() as connection:
             rows = asked.rows(connection, asked.newest(EQUIPMENT, "name"))
-        return [dict(row) for row in rows if kind in (None, row["kind"])]
+        found = [dict(row) for row in rows if kind in (None, row["kind"])]
+        return sorted(found, key=lambda row: str(row["name"]))  # databases differ in the order of letters
 
     def history(self, name: str) -> list[Happening]:
         """Everything that was done to one thing, the earliest first."""
@@ -84,18 +85,18 @@ class Records(Shown):
     def due(self, on: str | None = None) -> list[Due]:
         """What must come back, the soonest first, seen from a day."""
         with self.bench.reading() as connection:
-            return due(connection, in_utc(on, "day")[:10] if on else today())
+            return due(connection, today() if on is None else in_utc(on, "day")[:10])
 
     def impact(self, name: str, since: str | None = None, until: str | None = None) -> Impact:
         """What was done between the last good and the first bad figure of an arm, or between stated times."""
-        times = [in_utc(time, what) if time else None for time, what in ((since, "since"), (until, "until"))]
+        times = [None if time is None else in_utc(time, what) for time, what in ((since, "since"), (until, "until"))]
         with self.bench.reading() as connection:
             return impact(connection, name, *times)
 
     def trend(self, arm: str, figure: str, **more: Any) -> Trend:
         """A figure over time: drift, when it meets its limit, whether it is in control. more: state, artefact, since,
         limit, guard, baseline (see `ulna.records.trend`)."""
-        if more.get("since"):
+        if more.get("since") is not None:
             more["since"] = in_utc(more["since"], "since")[:10]
         with self.bench.reading() as connection:
             return trend(connection, arm, figure, **more)

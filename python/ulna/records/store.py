@@ -21,6 +21,11 @@ def sha256_of(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
+def is_name(name: str) -> bool:
+    """Whether it is one that a store gives."""
+    return _NAME.fullmatch(name) is not None
+
+
 class Store:
     """A folder of files, each named by what is in it."""
 
@@ -29,7 +34,7 @@ class Store:
 
     def place(self, sha256: str) -> Path:
         """Where a file is, or would be. Raises ValueError for what is no SHA-256: no other name is ever opened."""
-        if not _NAME.fullmatch(sha256):
+        if not is_name(sha256):
             raise ValueError(f"no SHA-256: {sha256!r}")
         return self.folder / sha256[:2] / sha256
 
@@ -75,6 +80,6 @@ class Store:
     def names(self) -> Iterator[str]:
         """Of all that is kept, in order."""
         for folder in sorted(self.folder.glob("[0-9a-f][0-9a-f]")):
-            for path in sorted(folder.iterdir()):
-                if _NAME.fullmatch(path.name):
+            for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+                if is_name(path.name) and path.is_file():
                     yield path.name

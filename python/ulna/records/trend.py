@@ -78,6 +78,8 @@ def trend(
     limit. baseline: so many of the first figures; None: half of them, 20 at most. Raises UlnaInputError where there
     is no such figure, or limits are none."""
     name = str(asked.equipment(connection, arm, ("arm", "robot"))["name"])
+    if baseline is not None and baseline < 1:
+        raise UlnaInputError(f"record: baseline: got {baseline} figures; expected 1 at least. Correct it.")
     points = [each for each in figures(connection, name, figure, state, artefact) if each.at >= (since or "")]
     _one_kind(points, figure)
     if not points:

@@ -149,21 +149,23 @@ def _beside(files: Store, named: dict[str, int]) -> Iterator[str]:
 def _rows(connection: Connection, files: Store, entries: Sequence[Entry], wrong: list[str]) -> int:
     """How many rows follow from the entries; what the database has beside them, or has not, is wrong."""
     expected: dict[Table, dict[tuple[int, int], dict[str, Any]]] = {table: {} for table in INDEX}
+    unknown = set[int]()
     for entry in entries:
         try:
             made = rows_of(entry, files)
         except (UlnaInputError, LookupError, TypeError, ValueError, OSError):
+            unknown.add(entry.seq)  # nobody knows what its rows should be: none of them was shown to be wrong
             wrong.append(f"entry {entry.seq}: its rows cannot be made anew, as its files are not what they were")
             continue
         for table, rows in made.items():
             expected[table].update({(row["seq"], row["line"]): row for row in rows})
     for table in INDEX:
-        wrong += _differences(connection, table, expected[table])
+        wrong += _differences(connection, table, expected[table], unknown)
     return sum(map(len, expected.values()))
 
 
 def _differences(
-    connection: Connection, table: Table, expected: dict[tuple[int, int], dict[str, Any]]
+    connection: Connection, table: Table, expected: dict[tuple[int, int], dict[str, Any]], unknown: set[int]
 ) -> Iterator[str]:
     left = dict(expected)
     for row in connection.execute(select(table)):
@@ -171,6 +173,8 @@ def _differences(
         key = (found["seq"], found["line"])
         due = left.pop(key, None)
         where = f"table {table.name}, row {key[0]}.{key[1]}"
+        if due is None and key[0] in unknown:
+            continue
         if due is None:
             yield f"{where} follows from no entry: it was added"
         elif due != found:

@@ -95,16 +95,16 @@ def artefact(
     Example: [bold]ulna record artefact KB-443 --value "length=443.172±0.001" --number EX-2025-0911 --valid-to
     2027-09-30[/bold]
     """
+    from ulna.ground.errors import UlnaInputError
     from ulna.records.said import expansion_said, values_said
 
     values = values_said(value or [])
     alpha, alpha_u = expansion_said(expansion)
     records = opened(where, by)
     details = {"maker": maker, "model": model, "serial": serial, "owner": owner, "location": location}
-    known = {row["name"] for row in records.equipment("artefact")}
-    if not values or name not in known or any([*details.values(), remark, state]):
-        entry = records.register(name, "artefact", state, **details, remark=remark)
     if values:
+        known = {row["name"] for row in records.equipment("artefact")}
+        anew = name not in known or any([*details.values(), remark, state])
         entry = records.certify(
             name,
             values,
@@ -116,7 +116,16 @@ def artefact(
             temperature_c=temperature,
             expansion_per_k=alpha,
             expansion_u_per_k=alpha_u,
+            anew={**details, "remark": remark, "state": state} if anew else None,
         )
+    else:
+        of_certificate = (certificate, number, certified_by, valid_from, valid_to, temperature, alpha)
+        if any(each is not None for each in of_certificate):
+            raise UlnaInputError(
+                f"artefact '{name}': a certificate without a value; expected one. Give it, such as "
+                '--value "length=443.172±0.001".'
+            )
+        entry = records.register(name, "artefact", state, **details, remark=remark)
     _said(entry, f"{entry.subject}: {len(values)} certified value{'s' * (len(values) != 1)}.", as_json)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from ulna.ground.errors import UlnaInputError
@@ -12,6 +13,9 @@ from ulna.records.tables import SETTING
 
 NAMES = {"four-eyes": "no", "numbers": "{year}-{n:04}"}
 """Each with what holds where nobody said anything."""
+
+_PATTERN = re.compile(r"(?:[^{}]|\{year\}|\{n(?::0?[1-9])?\})+")
+"""No other braces: Python's own pads to any width, and reaches into objects."""
 
 
 def rows(entry: Entry, files: Store) -> Iterator[Row]:
@@ -33,11 +37,7 @@ def _four_eyes(value: str) -> None:
 
 
 def _numbers(value: str) -> None:
-    try:
-        one, other = (value.format(year=2026, n=n) for n in (1, 2))
-    except (ValueError, KeyError, IndexError, AttributeError):
-        one = other = ""
-    if one == other or not one.isprintable() or len(one) > 60:
+    if not (_PATTERN.fullmatch(value) and "{n" in value and value.isprintable() and len(value) <= 60):
         raise UlnaInputError(
             f"setting numbers: got '{value[:40]}', expected a pattern with {{n}}, such as AB-{{year}}-{{n:04}}. "
             "Correct it."

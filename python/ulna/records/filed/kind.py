@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.records.acts.act import Row
 from ulna.records.tables import FIGURE
 
+_DAY = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 GOOD, BAD, OUT = "pass", "fail", "out of control"
 """Verdicts of figures; the last is of the history of a check."""
 
@@ -79,14 +81,18 @@ def figures_mm(about: About, source: str, state: str, figures: Mapping[str, Any]
 
 
 def in_utc(said: str, what: str) -> str:
-    """A time as the record has it: ISO 8601 in UTC; one without a zone is this machine's, a day begins at noon UTC.
+    """A time as the record has it: ISO 8601 in UTC, to the microsecond, so that every database puts them in one order;
+    one without a zone is this machine's, a day alone is its noon in UTC on every machine.
 
     Raises UlnaInputError for what is no time.
     """
     try:
-        if len(said) == len("2026-01-01"):
-            return datetime.fromisoformat(said).replace(hour=12, tzinfo=UTC).isoformat()
-        return datetime.fromisoformat(said).astimezone(UTC).isoformat()
+        # Python takes 20260101 and 2026-W01-1 as well, which would be a midnight of this machine
+        if not _DAY.match(said):
+            raise ValueError
+        day = _DAY.fullmatch(said) is not None
+        time = datetime.fromisoformat(said)
+        return (time.replace(hour=12, tzinfo=UTC) if day else time.astimezone(UTC)).isoformat(timespec="microseconds")
     except (ValueError, OverflowError, OSError):
         raise UlnaInputError(
             f"{what}: got '{said[:40]}', expected a day or a time such as 2026-11-30 or 2026-11-30T14:05. Correct it."

@@ -24,7 +24,8 @@ class ResultKind(FiledKind):
         result = Result.load(path)
         document, _ = read_json(path, "a result.json")
         tables = [document.get(key) for key in ("residuals_file", "artefacts_file")]
-        # Result.load has found that they are plain names in the same folder
+        # only whoever asks for residuals reads their table: now, so that no other file is kept in its place
+        _ = result.residuals
         beside = {table["file"]: path.parent / table["file"] for table in tables if table}
         return Read(result.arm.name, result.provenance.get("time"), beside)
 
