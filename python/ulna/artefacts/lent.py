@@ -13,8 +13,6 @@ from ulna.formats.models import Strict, fill
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.provided import provided
 
-WORK = "artefact of a record"
-
 
 class LentTable(Strict):
     """`artefact.bar = { record = "KB-443" }`."""
@@ -60,7 +58,9 @@ def stated(name: str, table: StatedTable | LentTable, place: Place) -> StatedTab
     kinds = [kind.name for kind in KINDS.values() if kind.lent] if table.kind is None else [table.kind]
     quantities = {kind: str(KINDS[kind].lent) for kind in kinds}
     try:
-        lent: Lent = provided(WORK)(table.record, list(dict.fromkeys(quantities.values())), table.expired_because)
+        lent: Lent = provided("artefact of a record")(
+            table.record, list(dict.fromkeys(quantities.values())), table.expired_because
+        )
     except UlnaInputError as error:
         raise UlnaInputError(f"{place.path}: key 'artefact.{name}.record': {error}") from None
     kind = next(each for each, quantity in quantities.items() if quantity == lent.quantity)
