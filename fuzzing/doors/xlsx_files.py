@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import re
+import zipfile
 from random import Random
 from typing import Any
 
@@ -39,7 +41,21 @@ def xlsx_bytes(table: Table, source: Random) -> bytes:
             page.cell(y, x).value = source.choice([None, True, "", 1e300, -1])
     stream = io.BytesIO()
     book.save(stream)
-    return stream.getvalue()
+    return _timeless(stream)
+
+
+def _timeless(stream: io.BytesIO) -> bytes:
+    """The same workbook: its parts, and what they say of themselves, are of no day."""
+    written = io.BytesIO()
+    with zipfile.ZipFile(stream) as book, zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as copy:
+        for name in book.namelist():
+            content = book.read(name)
+            if name == "docProps/core.xml":
+                content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", b"2026-01-01T00:00:00Z", content)
+            part = zipfile.ZipInfo(name)  # of 1980
+            part.compress_type = zipfile.ZIP_DEFLATED
+            copy.writestr(part, content)
+    return written.getvalue()
 
 
 def _cell(cell: Any) -> Any:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import datetime
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from fuzzing.doors.json_files import JsonDoor
@@ -62,6 +65,20 @@ def test_inputs_are_the_same_for_a_seed(room: Room) -> None:
     for door in DOORS.values():
         assert door.trial(room, 5, 3) == door.trial(room, 5, 3)
         assert any(door.trial(room, 5, k) != door.trial(room, 6, k) for k in range(5)), door.name
+
+
+def test_inputs_are_the_same_in_another_year(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Libraries that write tables write the moment too."""
+    doors = [door for name, door in DOORS.items() if name.startswith("table")]
+    before = [[door.trial(room, 5, k) for k in range(12)] for door in doors]
+    then = datetime.datetime(2031, 5, 6, 7, 8, 9, tzinfo=datetime.UTC)
+    clock = SimpleNamespace(now=lambda tz=None: then)
+    told = SimpleNamespace(datetime=clock, timezone=datetime.timezone)
+    monkeypatch.setattr("openpyxl.writer.excel.datetime", told)
+    monkeypatch.setattr("openpyxl.packaging.core.datetime", told)
+    monkeypatch.setattr(time, "asctime", lambda *_: "Tue May  6 07:08:09 2031")
+    monkeypatch.setattr(time, "localtime", lambda *_: then.timetuple())
+    assert [[door.trial(room, 5, k) for k in range(12)] for door in doors] == before
 
 
 def test_a_door_begins_with_what_is_good(room: Room, tmp_path: Path) -> None:

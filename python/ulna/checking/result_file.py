@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ulna.formats.models import fill
-from ulna.formats.toml import MOST, check_format, read_json
+from ulna.formats.spelling import MOST
+from ulna.formats.toml import check_format, read_json
 from ulna.ground.errors import UlnaInputError
 from ulna.verification.decision import Verdict
 from ulna.verification.result_file import (

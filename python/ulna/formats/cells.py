@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from typing import Any
@@ -10,17 +11,23 @@ import polars as pl
 
 from ulna.formats.header import Header, Numeric
 from ulna.formats.layout import Layout
-from ulna.formats.spelling import PLAIN, Spelling, sexagesimal, thousands_of
+from ulna.formats.spelling import MOST, PLAIN, Spelling, sexagesimal, thousands_of
 from ulna.ground.errors import UlnaInputError
 
 
 def bad_cell(header: Header, row: int, column: str, cell: str, numeric: Numeric, decimal: str = ".") -> str:
-    """The message for a cell that is empty, no number or no finite number."""
+    """The message for a cell that is empty, no number, or none of a size that quantities have."""
     at = f"{header.path}: {header.at(row, column)}"
     if not cell.strip():
         kind = "number" if numeric(column) else "name"
         return f"{at}: the cell is empty; expected a {kind}. Fill it or remove the row."
-    kind = "a finite number" if number_of(cell, decimal) is not None else "a number"
+    number = number_of(cell, decimal)
+    if number is not None and MOST < abs(number) < math.inf:
+        return (
+            f"{at}: got '{cell if len(cell) <= 60 else number}', more than any quantity is; expected a number up to "
+            f"{MOST:g} in size. Correct it or remove the row."
+        )
+    kind = "a finite number" if number is not None else "a number"
     return f"{at}: got '{cell[:60]}', expected {kind}. Correct it or remove the row."
 
 
@@ -59,7 +66,7 @@ def text_cell(
             f"{at}: got '{cell[:60]}', expected a number. Say {layout.say('thousands', sign)} where that sign stands "
             "between thousands, or correct the cell."
         )
-    if numeric(column) and no_header and cell.strip():
+    if numeric(column) and no_header and cell.strip() and number_of(cell, decimal) is None:
         return (
             f"{at}: got '{cell[:60]}', expected a number, because the file is said to have no header "
             f"({layout.key('header')}). Correct the cell, or remove that where this is the header."

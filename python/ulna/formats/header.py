@@ -19,6 +19,7 @@ import numpy as np
 import polars as pl
 
 from ulna.formats.places import Places
+from ulna.formats.spelling import MOST
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
 
@@ -39,7 +40,7 @@ class Piece:
     before: int
     """Number of data rows before the first of these."""
     numbers: F64
-    """(N, k), finite, C order."""
+    """(N, k), of `MOST` at most in size, C order."""
     texts: dict[str, pl.Series]
     """(N,) each, no empty cell."""
 
@@ -132,11 +133,11 @@ class Header(ABC):
 
     @abstractmethod
     def refusal(self, row: int, column: str, numeric: Numeric) -> str:
-        """The message about a cell that `cells` left as a gap, or that is not finite."""
+        """The message about a cell that `cells` left as a gap, that is not finite, or beyond `MOST`."""
 
     def frame(self, numeric: Numeric, columns: Sequence[str], blank: Sequence[str] = ()) -> pl.DataFrame:
-        """All rows of some columns, every cell filled but those of `blank`, every number finite. Raises UlnaInputError
-        naming row, column and value of the first cell that is not."""
+        """All rows of some columns, every cell filled but those of `blank`, every number finite and of a size that
+        quantities have. Raises UlnaInputError naming row, column and value of the cells that are not."""
         return self.checked(self.cells(numeric, columns), numeric, blank=blank)
 
     def pieces(self, numbers: Sequence[str], texts: Sequence[str], rows: int) -> Iterator[Piece]:
@@ -158,7 +159,8 @@ class Header(ABC):
         before: int = 0,
         blank: Sequence[str] = (),
     ) -> pl.DataFrame:
-        """The frame, if every cell is filled and every number finite; strings without spaces around them.
+        """The frame, if every cell is filled and every number finite and `MOST` at most in size; strings without spaces
+        around them.
 
         row: (N,) the rows' numbers in the file; without it they follow each other after the first `before`. blank:
         columns of names in which cells may be empty (""). Labels are those that the study gives them. Raises
@@ -174,8 +176,8 @@ class Header(ABC):
         for k, column in enumerate(frame):
             if column.name in blank:
                 continue
-            bad = column.is_null()
-            bad |= ~column.is_finite().fill_null(False) if numeric(column.name) else (column == "").fill_null(True)
+            good = column.is_between(-MOST, MOST) if numeric(column.name) else column != ""  # NaN is not between
+            bad = ~good.fill_null(False)
             if bad.any():
                 count += int(bad.sum())
                 found += [(int(index), k, column.name) for index in bad.arg_true()[:MOST_CELLS]]

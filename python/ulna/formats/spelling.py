@@ -12,6 +12,10 @@ from dataclasses import dataclass
 BLANKS = "\u00a0\u202f\u2009 "
 """What stands between thousands where the sign is a blank."""
 
+MOST = 1e15
+"""In size, of any number in a file that people or instruments write: no quantity in any unit comes near it, and what
+is made of it, squares of its millimetres too, is a number still."""
+
 _FORTRAN = re.compile(r"(?<=[0-9.])[dD](?=[+-]?[0-9]+$)")
 _LOOKS = re.compile(r"[+-]?[\d.,'\u2019\u00a0\u202f\u2009]*\d[\d.,'\u2019]*([eEdD][+-]?\d+)?\s*[°%]?", re.ASCII)
 
@@ -55,6 +59,11 @@ class Spelling:
 _SIGNS = {",": ",", ".": ".", "'": "'\u2019", " ": BLANKS}
 """What is taken for each sign."""
 PLAIN = Spelling()
+
+
+def usable(value: float | None) -> bool:
+    """Whether a cell holds a number of a size that quantities have; no gap, NaN or infinity."""
+    return value is not None and abs(value) <= MOST
 
 
 def looks_numeric(text: str) -> bool:

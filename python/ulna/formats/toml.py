@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from ulna.formats.names import check_path
+from ulna.formats.spelling import MOST
 from ulna.ground.errors import UlnaInputError, nearest
 
 #: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
-MOST = 1e15
-"""Of any number in a hand-written file."""
 MOST_BYTES = 8 << 20
 MOST_STEPS, MOST_TABLES = 16, 400_000
 """Names of one key with points between, and of all of them together: each is a table of its own, of a kilobyte."""

@@ -19,6 +19,7 @@ import polars as pl
 from ulna.formats.cells import text_cell, wrong_count
 from ulna.formats.header import Header, Numeric, Piece
 from ulna.formats.layout import AS_EXPECTED, Layout
+from ulna.formats.spelling import usable
 from ulna.formats.tables.grid import DITTO
 from ulna.formats.tables.heads import UNITS
 from ulna.formats.tables.registry import FORMATS
@@ -183,7 +184,7 @@ class ComingTable(Header):
         values, labels = [], []
         for name in numbers:
             value = number(by_name[name])
-            if value is None or value - value != 0.0:
+            if value is None or not usable(value):
                 raise UlnaInputError(self._bad(row, name, by_name[name], numbers))
             values.append(value)
         for name in texts:

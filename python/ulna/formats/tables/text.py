@@ -21,6 +21,7 @@ from ulna.formats.cells import number_of, text_cell, wrong_count
 from ulna.formats.header import MOST_CELLS, Header, Numeric, Piece, refused
 from ulna.formats.layout import AS_EXPECTED, Layout
 from ulna.formats.places import Places
+from ulna.formats.spelling import usable
 from ulna.formats.tables.lines import LineTable, open_lines, untidy
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import installed
@@ -250,7 +251,7 @@ class TextTable(Header):
 
 
 def _is_bad(cell: str, value: float | None) -> bool:
-    return value is None or value - value != 0.0 or not cell.strip()
+    return not usable(value) or not cell.strip()
 
 
 def open_text(path: Path, start: bytes, what: str, layout: Layout) -> Header:
