@@ -123,8 +123,6 @@ def page(found: dict[str, list[tuple[str, float]]], calibrations: int) -> str:
     today = datetime.now(UTC).date().isoformat()
     return "\n".join(
         [
-            "# Records: how long",
-            "",
             f"`python -m benchmarks.records --calibrations {calibrations}`, {today}, {os.cpu_count()} cores, "
             f"{platform.system()} {platform.machine()}, Python {platform.python_version()}. ms, median of {REPEATS} "
             "runs in a process that runs already; `verify` once.",
