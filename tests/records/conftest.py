@@ -11,12 +11,16 @@ import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.real_parts import lacking
 from tests.records.benches import RESULT
 
+from ulna.records.database import PASSWORD
 from ulna.records.records import Records
+
+PASSWORD_OF_TESTS = "of tests"
 
 
 def _program(name: str) -> str | None:
@@ -45,7 +49,12 @@ def postgresql() -> Iterator[str]:
         port = probe.getsockname()[1]
     common = {"cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, **as_user}
     data = folder / "data"
-    subprocess.run([initdb, "-D", data, "-A", "trust", "-U", "ulna", "-E", "UTF8"], check=True, **common)
+    secret = folder / "password"
+    secret.write_text(PASSWORD_OF_TESTS)
+    secret.chmod(0o644)
+    asked = ["-A", "scram-sha-256", f"--pwfile={secret}", "-U", "ulna", "-E", "UTF8"]
+    subprocess.run([initdb, "-D", data, *asked], check=True, **common)
+    os.environ[PASSWORD] = PASSWORD_OF_TESTS
     running = subprocess.Popen(
         [server, "-D", data, "-p", str(port), "-k", folder, "-c", "listen_addresses=127.0.0.1", "-c", "fsync=off"],
         **common,
@@ -56,18 +65,25 @@ def postgresql() -> Iterator[str]:
     finally:
         running.send_signal(signal.SIGQUIT)  # ends it at once, whoever is connected
         running.wait(timeout=30)
+        os.environ.pop(PASSWORD, None)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _connected(host: str, port: int) -> Any:
+    import pg8000.native
+
+    return pg8000.native.Connection(
+        "ulna", host=host, port=port, database="postgres", password=PASSWORD_OF_TESTS, timeout=10
+    )
 
 
 def _wait(port: int, running: subprocess.Popen[bytes]) -> None:
     import time
 
-    import pg8000.native
-
     for _ in range(300):
         assert running.poll() is None, "PostgreSQL ended at once"
         try:
-            pg8000.native.Connection("ulna", host="127.0.0.1", port=port, database="postgres").close()
+            _connected("127.0.0.1", port).close()
             return
         except Exception:
             time.sleep(0.1)
@@ -82,11 +98,9 @@ def database(request: pytest.FixtureRequest) -> Callable[[], str | None]:
     server = request.getfixturevalue("postgresql")
 
     def make() -> str:
-        import pg8000.native
-
         host, port = server.removeprefix("postgresql://ulna@").split(":")
         name = f"t{os.urandom(6).hex()}"
-        connection = pg8000.native.Connection("ulna", host=host, port=int(port), database="postgres")
+        connection = _connected(host, int(port))
         connection.run(f"CREATE DATABASE {name}")
         connection.close()
         return f"{server}/{name}"

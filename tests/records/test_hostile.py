@@ -333,3 +333,17 @@ def test_a_server_without_its_tables_is_said_to_be_so(
     assert not records.verify().good
     assert records.rebuild() == before.entries
     assert records.verify() == before
+
+
+def test_a_password_is_kept_nowhere(tmp_path: Path) -> None:
+    with pytest.raises(UlnaInputError, match="PGPASSWORD") as caught:
+        Records.init(tmp_path / "bench", "postgresql://ulna:secret@127.0.0.1/x")
+    assert "secret" not in str(caught.value)
+    assert not (tmp_path / "bench").exists()
+
+
+def test_a_wrong_password_is_said(tmp_path: Path, postgresql: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PGPASSWORD", "another")
+    with pytest.raises(UlnaInputError, match="password authentication failed") as caught:
+        Records.init(tmp_path / "bench", f"{postgresql}/postgres")
+    assert "another" not in str(caught.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +16,8 @@ from ulna.ground.errors import UlnaInputError
 
 WAIT_S = 60.0
 """For the one that writes."""
+PASSWORD = "PGPASSWORD"
+"""In the environment, as PostgreSQL's own programs have it."""
 _LOCK = 0x756C6E61
 """PostgreSQL's number of the lock that whoever writes holds: "ulna"."""
 _BEGIN_READING = {"sqlite": "BEGIN", "postgresql": "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"}
@@ -37,8 +40,9 @@ def engine_of(url: str) -> Engine:
         event.listen(engine, "connect", _set_up)
         return engine
     made = made.set(drivername="postgresql+pg8000")
-    options = {"poolclass": NullPool, "isolation_level": "AUTOCOMMIT", "connect_args": {"timeout": WAIT_S + 10}}
-    return create_engine(made, **options)
+    said = os.environ.get(PASSWORD)
+    options = {"timeout": WAIT_S + 10} | ({} if said is None else {"password": said})
+    return create_engine(made, poolclass=NullPool, isolation_level="AUTOCOMMIT", connect_args=options)
 
 
 def _checked(url: str) -> URL:
@@ -53,6 +57,11 @@ def _checked(url: str) -> URL:
         raise UlnaInputError(
             f"database {_shown(url)}: a database of kind '{backend}'; expected postgresql://user@host/name, or none: "
             "then it is SQLite in the folder."
+        )
+    if made.password is not None:
+        raise UlnaInputError(
+            f"database {_shown(url)}: a password in the URL, which the record would keep in plain text; expected "
+            f"postgresql://user@host/name. Give it in the environment: {PASSWORD}."
         )
     if made.query:
         raise UlnaInputError(
