@@ -58,7 +58,15 @@ def pressed(door: Path, words: str) -> list[str]:
 def test_bash_completes_commands_options_names_and_files(door: Path) -> None:
     assert pressed(door, "ulna cal") == ["calibrate"]
     assert pressed(door, 'ulna ""') == [*COMMANDS, *GROUPS]
-    assert set(pressed(door, "ulna calibrate --")) == {"--out", "--force", "--json", "--all", "--judge", "--help"}
+    assert set(pressed(door, "ulna calibrate --")) == {
+        "--out",
+        "--force",
+        "--json",
+        "--all",
+        "--judge",
+        "--record",
+        "--help",
+    }
     assert pressed(door, 'ulna import ""') == ["mukca", "ipa-ur10", "serial-robots", "urdf", "dh"]
     assert pressed(door, "ulna import dh --conv") == ["--convention"]
     assert pressed(door, 'ulna reproduce ""') == list(STUDIES)

@@ -62,8 +62,11 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[type, Any]:
         warnings.simplefilter("ignore", ulna.InputWarning)
         simulated = ulna.simulate(simulation)
     q = np.full((3, 7), 0.4) + np.arange(3)[:, None] * 0.1
+    records = ulna.Records.init(folder / "bench", by="Jan")
+    records.register("P7")
     found: list[Any] = [
         study,
+        records,
         study.arm,
         study.readings[0],
         study.readings[0].artefact,

@@ -65,15 +65,15 @@ def _checked(url: str) -> URL:
         )
     if made.query:
         raise UlnaInputError(
-            f"database {_shown(url).split('?')[0]}: options behind a question mark; expected "
+            f"database {_shown(url)}: options behind a question mark; expected "
             "postgresql://user@host/name alone. Leave them out."
         )
     return made
 
 
 def _shown(url: str) -> str:
-    """Without what comes before the host, which may be a password."""
-    return url.rsplit("@", 1)[-1][:80]
+    """Without what comes before the host and behind the name, which may be a password."""
+    return url.rsplit("@", 1)[-1].split("?")[0][:80]
 
 
 def _set_up(connection: sqlite3.Connection, _: Any) -> None:
