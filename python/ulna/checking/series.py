@@ -8,14 +8,9 @@ import numpy as np
 
 from ulna.checking.history import Past
 from ulna.checking.tables import ControlTable
-from ulna.control.basis import Basis, normal_scores, two_sided
-from ulna.control.ewma import against
-from ulna.control.runs import USUAL, runs
-from ulna.control.shewhart import Shewhart, shewhart
+from ulna.control.basis import Basis
+from ulna.control.chart import Chart, chart
 from ulna.ground.arrays import F64
-
-ROWS = USUAL[1:]
-"""Rules about figures in a row; a single figure has limits of its own."""
 
 
 @dataclass(frozen=True)
@@ -64,16 +59,15 @@ def judged(past: Past, now_mm: float, signed: bool, control: ControlTable) -> Hi
     """
     base = np.flatnonzero(past.well)[: control.baseline]
     charted = _to_chart(np.append(past.values_mm, now_mm), signed)
-    single = shewhart(charted[base], charted[-1:], past.days[base], control.alpha, control.fewest, of_the_mean=True)
+    late = charted[base[-1] + 1 :] if len(base) else charted
+    found = chart(charted[base], late, past.days[base], control.alpha, control.fewest, control.weight)
+    single = found.limits
     counts = single.basis, len(past.values_mm), past.not_used
-    if single.centre is None or single.s is None or single.lower is None or single.upper is None:
+    if single.centre is None or single.lower is None or single.upper is None:
         return History(*counts, None, None, None, None, None, None, (), ())
-    late = charted[base[-1] + 1 :]
-    k = two_sided(len(base) - 1, 1.0 - control.alpha)
-    mean = against(late, single.centre, single.s, single.basis, control.weight, k, of_the_mean=True)
-    rows = _rows(single, late, signed)
+    rows = _rows(found, signed)
     counted = [row for row in rows if row.rule in control.rows]
-    average, half = float(mean.averages[-1]), float(mean.half[-1])
+    average, half = float(found.averages.averages[-1]), float(found.averages.half[-1])
 
     def back(value: float) -> float:
         return value if signed else max(value, 0.0) ** 1.5
@@ -87,8 +81,8 @@ def judged(past: Past, now_mm: float, signed: bool, control: ControlTable) -> Hi
         single.centre - half if signed else None,
         back(single.centre + half),
         (
-            *_beyond(single, charted[-1], signed),
-            *_drifted(average - single.centre, half, signed),
+            *([_BEYOND] if found.beyond and (signed or charted[-1] > single.centre) else []),
+            *([_DRIFTED] if found.drifted and (signed or average > single.centre) else []),
             *counted,
         ),
         tuple(row.words for row in rows if row not in counted),
@@ -99,24 +93,13 @@ def _to_chart(values_mm: F64, signed: bool) -> F64:
     return values_mm if signed else np.asarray(np.abs(values_mm) ** (2.0 / 3.0))
 
 
-def _beyond(single: Shewhart, now: float, signed: bool) -> list[Signal]:
-    assert single.centre is not None
-    if len(single.outside) == 0 or not (signed or now > single.centre):
+_BEYOND = Signal("limits", "beyond the limits of its history", slow=False)
+_DRIFTED = Signal("average", "the average of the last checks has left the mean", slow=True)
+
+
+def _rows(found: Chart, signed: bool) -> list[Signal]:
+    """That go on to the newest figure; of what cannot be negative only upward."""
+    if found.rows is None:
         return []
-    return [Signal("limits", "beyond the limits of its history", slow=False)]
-
-
-def _drifted(away: float, half: float, signed: bool) -> list[Signal]:
-    if (abs(away) if signed else away) <= half:
-        return []
-    return [Signal("average", "the average of the last checks has left the mean", slow=True)]
-
-
-def _rows(single: Shewhart, late: F64, signed: bool) -> list[Signal]:
-    assert single.centre is not None
-    assert single.s is not None
-    if single.s == 0.0:
-        return []
-    z = normal_scores(late, single.centre, single.s, single.basis.n)
-    found = runs(z, 0.0, 1.0, ROWS).ending(len(z) - 1)
-    return [Signal(run.rule, run.words, slow=True) for run in found if signed or run.upward]
+    ending = found.rows.ending(found.new - 1)
+    return [Signal(run.rule, run.words, slow=True) for run in ending if signed or run.upward]

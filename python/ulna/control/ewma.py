@@ -50,17 +50,18 @@ def ewma(
     k: float = 3.0,
     fewest: int = FEWEST,
     exact: bool = True,
+    of_the_mean: bool = False,
 ) -> Ewma:
     """(n,) figures of a time when all was well, (N,) new ones in order; days: (n,) when the baseline was.
 
-    exact: as `against`. Raises UlnaInputError for what are no numbers.
+    exact, of_the_mean: as `against`. Raises UlnaInputError for what are no numbers.
     """
     of, late = figures(baseline, "baseline"), figures(new, "figures")
     rests_on = basis("EWMA", len(of), max(fewest, 2), None if days is None else as_many(days, of, "days"))
     if rests_on.too_few:
         nothing = np.zeros(0)
         return Ewma(rests_on, weight, k, None, nothing, nothing, np.zeros(0, dtype=np.int64))
-    return against(late, float(of.mean()), float(of.std(ddof=1)), rests_on, weight, k, exact)
+    return against(late, float(of.mean()), float(of.std(ddof=1)), rests_on, weight, k, exact, of_the_mean)
 
 
 def against(

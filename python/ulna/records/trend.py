@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from sqlalchemy import Connection, select
 
+from ulna.control.chart import Chart, chart
 from ulna.control.drift import Drift, drift
-from ulna.control.ewma import Ewma, ewma
-from ulna.control.runs import Runs, runs
-from ulna.control.shewhart import FEWEST, Shewhart, shewhart
+from ulna.control.shewhart import FEWEST
 from ulna.control.until import Until, until
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
@@ -24,26 +23,6 @@ from ulna.records.tables import EVENT
 LONGEST_BASELINE = 20
 _BREAKS = ("adjustment", "repair", "firmware")
 """Events after which an arm may be another one."""
-
-
-@dataclass(frozen=True)
-class Chart:
-    """New figures against those of a time when all was well."""
-
-    baseline: int
-    """So many of the first figures."""
-    limits: Shewhart
-    averages: Ewma
-    runs: Runs | None
-    """None where the baseline is too short, or all of it is equal."""
-
-    @property
-    def in_control(self) -> bool | None:
-        """None where nothing can be said."""
-        if self.limits.in_control is None:
-            return None
-        found = self.runs is not None and bool(self.runs.found)
-        return bool(self.limits.in_control and self.averages.in_control and not found)
 
 
 @dataclass(frozen=True)
@@ -58,7 +37,10 @@ class Trend:
     drift: Drift
     until: Until | None
     """None where no limit is stated."""
+    baseline: int
+    """So many of the first figures: a time when all was well."""
     chart: Chart
+    """Of those after it."""
     breaks: list[str]
     """What happened meanwhile that may have changed the arm: "2026-05-04 repair: …"."""
 
@@ -91,6 +73,8 @@ def trend(
     u = None if any(each is None or each <= 0.0 for each in stated) else [float(each or 0.0) for each in stated]
     found = drift(days, values, u) if np.ptp(days) > 0.0 else drift(days[:1], values[:1])
     said = limit if limit is not None else next((each.limit for each in reversed(points) if each.limit), None)
+    first = baseline if baseline is not None else min(LONGEST_BASELINE, max(FEWEST, len(values) // 2))
+    first = min(first, len(values))
     return Trend(
         name,
         figure,
@@ -98,7 +82,8 @@ def trend(
         days,
         found,
         None if said is None else until(found, said, guard=guard),
-        _chart(values, days, baseline),
+        first,
+        chart(values[:first], values[first:], days[:first]),
         _breaks(connection, name, points),
     )
 
@@ -112,16 +97,6 @@ def _one_kind(points: Sequence[Point], figure: str) -> None:
                 f"record: '{figure}' is there of several {what}s ({', '.join(kinds)}), which are no one series; "
                 f"expected one. Name it with {option}."
             )
-
-
-def _chart(values: Sequence[float], days: F64, asked_for: int | None) -> Chart:
-    count = asked_for if asked_for is not None else min(LONGEST_BASELINE, max(FEWEST, len(values) // 2))
-    of, new = values[:count], values[count:]
-    limits = shewhart(of, new, days[:count])
-    averages = ewma(of, new, days[:count])
-    usable = limits.centre is not None and limits.s is not None and limits.s > 0.0
-    found = runs(new, float(limits.centre or 0.0), float(limits.s or 0.0)) if usable and new else None
-    return Chart(len(of), limits, averages, found)
 
 
 def _breaks(connection: Connection, arm: str, points: Sequence[Point]) -> list[str]:

@@ -14,7 +14,7 @@ from ulna.control.drift import Drift
 from ulna.ground.digits import figure_mm, quantity
 from ulna.records.advising import Advice
 from ulna.records.history import Point, Series
-from ulna.records.trend import Chart, Trend
+from ulna.records.trend import Trend
 
 _LATEST = 12
 
@@ -31,7 +31,7 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
     """The figures, the line, the limit, the chart."""
     points = found.points if everything else found.points[-_LATEST:]
     first = len(found.points) - len(points)
-    outside = {found.chart.baseline + int(k) for k in found.chart.limits.outside}
+    outside = {found.baseline + int(k) for k in found.chart.limits.outside}
     rows = [
         (
             each.at[:10],
@@ -50,7 +50,7 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
     parts += ["", Text(f"Drift: {found.drift.said}")]
     if found.until is not None:
         parts.append(Text(f"Limit: {found.until.reason}"))
-    parts.append(Text(f"Chart: {_chart(found.chart, found.points[-1])}"))
+    parts.append(Text(f"Chart: {_chart(found)}"))
     if found.breaks:
         parts.append(Text(f"Meanwhile: {'; '.join(found.breaks)}. With --since DAY only what came after."))
     return parts
@@ -63,20 +63,23 @@ def _number(value: float, of: Point) -> str:
     return quantity(value, of.u, of.unit)
 
 
-def _chart(chart: Chart, of: Point) -> str:
-    limits = chart.limits
+def _chart(found: Trend) -> str:
+    chart, limits, of = found.chart, found.chart.limits, found.points[-1]
     if limits.lower is None or limits.upper is None:
         return f"{limits.basis.said}; nothing is said of control."
-    said = f"limits {_number(limits.lower, of)} to {_number(limits.upper, of)}, of the first {chart.baseline}"
-    if chart.in_control:
-        return f"{said}: in control."
-    found = []
-    if len(limits.outside):
-        found.append(f"{len(limits.outside)} outside")
-    if len(chart.averages.outside):
-        found.append(f"{len(chart.averages.outside)} weighted averages outside")
-    found += [run.words for run in (chart.runs.found if chart.runs else ())]
-    return f"{said}: out of control ({'; '.join(found)})."
+    said = f"limits {_number(limits.lower, of)} to {_number(limits.upper, of)}, of the first {found.baseline}"
+    if chart.in_control is None:
+        return f"{said}: no figure came after them."
+    why = [
+        *(["beyond the limits"] if chart.beyond else []),
+        *(["the average has left the mean"] if chart.drifted else []),
+    ]
+    verdict = f"the newest is out of control ({'; '.join(why)})" if why else "the newest is in control"
+    earlier = sum(int(k) < chart.new - 1 for k in limits.outside)
+    told = [f"{earlier} earlier outside"] if earlier else []
+    told += [run.words for run in (chart.rows.ending(chart.new - 1) if chart.rows else ())]
+    besides = f"; told besides: {', '.join(told)}" if told else ""
+    return f"{said}: {verdict}{besides}."
 
 
 def trend_document(found: Trend) -> dict[str, Any]:
@@ -89,7 +92,7 @@ def trend_document(found: Trend) -> dict[str, Any]:
         "points": [asdict(each) for each in found.points],
         "drift": _drift(found.drift),
         "until": until and {"days": until.interval_days, "meets_days": until.meets_days, "reason": until.reason},
-        "chart": _chart_document(found.chart),
+        "chart": _chart_document(found),
         "breaks": found.breaks,
     }
 
@@ -109,15 +112,16 @@ def _drift(found: Drift) -> dict[str, Any]:
     }
 
 
-def _chart_document(chart: Chart) -> dict[str, Any]:
+def _chart_document(found: Trend) -> dict[str, Any]:
+    chart, first = found.chart, found.baseline
     return {
-        "baseline": chart.baseline,
+        "baseline": first,
         "centre": chart.limits.centre,
         "lower": chart.limits.lower,
         "upper": chart.limits.upper,
-        "outside": [chart.baseline + int(k) for k in chart.limits.outside],
-        "averages_outside": [chart.baseline + int(k) for k in chart.averages.outside],
-        "runs": [asdict(run) for run in (chart.runs.found if chart.runs else ())],
+        "outside": [first + int(k) for k in chart.limits.outside],
+        "averages_outside": [first + int(k) for k in chart.averages.outside],
+        "rows": [asdict(run) for run in (chart.rows.found if chart.rows else ())],
         "in_control": chart.in_control,
     }
 
