@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from tests.records.benches import CROSS_VALIDATION, RESULT, ROOT, evaluation, verification
 
 from ulna import UlnaInputError
+from ulna.records.outcomes import Recording
 from ulna.records.records import Records
 
 
@@ -186,3 +188,54 @@ def test_a_database_that_was_lost_is_made_anew(tmp_path: Path) -> None:
             Records.open(tmp_path / "bench")
         assert records.rebuild() == 1
         assert records.verify() == before
+
+
+def test_a_database_made_anew_loses_nothing_that_came_in_between(
+    tmp_path: Path, database: Callable[[], str | None]
+) -> None:
+    records = Records.init(tmp_path / "bench", database(), by="Jan")
+    records.register("P7")
+    with ThreadPoolExecutor(2) as pool:
+        writing = pool.submit(lambda: [records.event("P7", "note", f"event {k}") for k in range(12)])
+        while not writing.done():
+            records.rebuild()
+        writing.result()
+    assert [each.text for each in records.history("P7") if each.what == "note"] == [f"event {k}" for k in range(12)]
+    found = records.verify()
+    assert (found.wrong, found.entries) == ([], 13)
+
+
+def test_a_database_is_put_aside_only_where_it_is_damaged(tmp_path: Path) -> None:
+    records = Records.init(tmp_path / "bench", by="Jan")
+    records.register("P7")
+    records.register("P8")
+    (first, *_) = [path for path in (tmp_path / "bench" / "chain").rglob("*") if len(path.name) == 64]
+    first.chmod(0o644)
+    first.write_text("no entry")
+    with pytest.raises(UlnaInputError):
+        records.rebuild()
+    assert [path.name for path in (tmp_path / "bench").glob("*damaged*")] == []
+    assert {row["name"] for row in records.equipment()} == {"P7", "P8"}
+
+
+def test_impact_since_a_day_looks_at_what_came_after_it(records: Records, tmp_path: Path) -> None:
+    for day, verdict in (("01-01", "fail"), ("02-01", "pass"), ("03-01", "pass")):
+        records.add(verification(tmp_path / f"{day}.json", 1.0, verdict), arm="P7", at=f"2026-{day}")
+    assert records.impact("P7").bad.startswith("2026-01-01")
+    with pytest.raises(UlnaInputError, match="no figure of 'P7' failed"):
+        records.impact("P7", since="2026-02-15")
+
+
+def test_checks_of_the_record_are_those_of_one_protocol(records: Records, tmp_path: Path) -> None:
+    text = (ROOT / "tests/data/fossils/check-1.json").read_text()
+    document = json.loads(text)
+    name = document["protocol"]["name"]
+    document["protocol"]["name"] = "another"
+    for number, each in enumerate((text, json.dumps(document))):
+        path = tmp_path / f"{number}.json"
+        path.write_text(each)
+        records.add(path, arm="P7")
+    kept = Recording(records.bench, "P7")
+    assert [path.read_text() for path in kept.checks(name)] == [text]
+    assert len(kept.checks("another")) == 1
+    assert kept.checks("none") == []

@@ -241,3 +241,31 @@ def test_an_entry_that_was_dated_back_is_named(full: Records) -> None:
     full.bench.links.put(forged.text.encode())
     (said,) = full.verify().wrong
     assert "is dated 2020-01-01" in said
+
+
+def links_of(records: Records) -> list[Path]:
+    """The files of the entries, in order."""
+    with records.bench.reading() as connection:
+        return [records.bench.links.place(entry.sha256) for entry in entries(connection)]
+
+
+def test_files_of_the_newest_entries_may_lack_after_a_cut_and_are_made(full: Records) -> None:
+    full.event("P7", "quarantine", "two entries in one write")
+    *_, last_but_one, last = links_of(full)
+    for each in (last_but_one, last):
+        each.unlink()
+    found = full.verify()
+    assert found.wrong == []
+    assert any(each.startswith("2 of the newest entries without a file") for each in found.remarks)
+    full.event("P7", "release", "the next write")
+    assert full.verify().remarks == []
+    assert last_but_one.exists()
+
+
+def test_any_other_file_of_an_entry_that_lacks_is_named(full: Records) -> None:
+    links = links_of(full)
+    links[2].unlink()
+    assert full.verify().wrong == ["entry 3 has no file in the chain's folder"]
+    for each in links:
+        each.unlink(missing_ok=True)
+    assert len(full.verify().wrong) == len(links)

@@ -42,6 +42,7 @@ def check(
     Example: [bold]ulna check protocol.toml monday.csv --history checks -o checks/monday.json[/bold]
     """
     from ulna.checking.check import check as run_check
+    from ulna.checking.protocol import load_protocol
     from ulna.cli import output
     from ulna.cli.printed.check import check_report
     from ulna.formats.output import check_output
@@ -49,7 +50,7 @@ def check(
     if out is not None:
         check_output(out.parent, [out.name], force)
     kept = recording(to_record, out)
-    earlier = [*(history or ()), *([] if kept is None else kept.checks())]
+    earlier = [*(history or ()), *([] if kept is None else kept.checks(load_protocol(protocol).file.name))]
     found = run_check(protocol, readings, earlier, date, operator)
     if out is not None:
         found.save(out, force)

@@ -12,11 +12,11 @@ from datetime import UTC, datetime
 from itertools import takewhile
 from typing import Any
 
-from sqlalchemy import Connection, func, insert, select
+from sqlalchemy import Connection, insert, select
 
 from ulna.records.entry import FIRST, Entry
 from ulna.records.projection import rows_of
-from ulna.records.store import Store
+from ulna.records.store import Store, sha256_of
 from ulna.records.tables import ENTRY
 
 _CUT = 1000
@@ -34,11 +34,6 @@ def head(connection: Connection) -> tuple[int, str]:
     return (0, FIRST) if row is None else (row[0], row[1])
 
 
-def count(connection: Connection) -> int:
-    """Entries."""
-    return connection.scalar(select(func.count()).select_from(ENTRY)) or 0
-
-
 def append(
     connection: Connection,
     files: Store,
@@ -48,7 +43,7 @@ def append(
     stated: Mapping[str, Any],
     named: Mapping[str, str],
 ) -> Entry:
-    """The next entry and the rows that follow from it, in a transaction that writes. Its file: `settle`. Raises
+    """The next entry and the rows that follow from it, in a transaction that writes; its file comes after. Raises
     UlnaInputError where a file that it names cannot be read."""
     seq, previous = head(connection)
     entry = Entry(seq + 1, now(), actor, act, subject, stated, named, previous)
@@ -86,8 +81,9 @@ def settle(connection: Connection, links: Store) -> None:
     """The files of the newest entries, where they are not there yet: the oldest first, so that a cut leaves no gap."""
     newest = select(ENTRY.c.text, ENTRY.c.sha256).order_by(ENTRY.c.seq.desc()).limit(_CUT)
     absent = takewhile(lambda row: not links.place(row[1]).exists(), connection.execute(newest))
-    for text, _ in reversed(list(absent)):
-        links.put(text.encode())
+    for text, name in reversed(list(absent)):
+        if sha256_of(text.encode()) == name:  # else it was changed, and no file of that name can be made
+            links.put(text.encode())
 
 
 def walk(connection: Connection, **only: str) -> Iterator[Entry]:

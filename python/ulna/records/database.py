@@ -91,6 +91,10 @@ def check_server(url: str) -> None:
         )
 
 
+class DamagedDatabaseError(UlnaInputError):
+    """A file that is no database any more: it can be put aside, as nobody can write to it."""
+
+
 class Database:
     """Where the chain and the index are."""
 
@@ -151,14 +155,10 @@ class Database:
         return self._damaged(said)
 
     def _damaged(self, said: str) -> UlnaInputError:
-        hint = (
-            " If its files are whole: ulna record rebuild."
-            if self.sqlite and any(each in said for each in _BROKEN)
-            else ""
-        )
-        return UlnaInputError(
-            f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole.{hint}"
-        )
+        words = f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole."
+        if self.sqlite and any(each in said for each in _BROKEN):
+            return DamagedDatabaseError(f"{words} If its files are whole: ulna record rebuild.")
+        return UlnaInputError(words)
 
 
 def _words(error: DBAPIError) -> str:

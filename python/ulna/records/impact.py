@@ -61,7 +61,7 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
     asked_for = (
         select(FIGURE)
         .where(FIGURE.c.arm == arm, FIGURE.c.verdict.in_((GOOD, BAD, OUT)), FIGURE.c.state.not_in(_LEFT))
-        .where(FIGURE.c.sha256.not_in(withdrawn()))
+        .where(FIGURE.c.sha256.not_in(withdrawn()), FIGURE.c.at > (since or ""))
         .order_by(FIGURE.c.at, FIGURE.c.seq, FIGURE.c.line)
     )
     times: dict[str, list[asked.Row]] = {}

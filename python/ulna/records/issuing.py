@@ -18,8 +18,9 @@ from ulna.records.acts.setting import NAMES
 from ulna.records.bench import Bench, checked_text
 from ulna.records.filing import ARMS
 from ulna.records.history import calibrations
-from ulna.records.registering import file_name, keep, may
+from ulna.records.registering import content_of, file_name, keep, may
 from ulna.records.standing import filed
+from ulna.records.store import sha256_of
 from ulna.records.tables import CERTIFICATE, EQUIPMENT, STANDING
 
 
@@ -73,6 +74,8 @@ def issue(bench: Bench, wanted: Asked) -> IssuedCertificate:
         laboratory = keep(bench, wanted.laboratory)
         said = Issued(number, now, bench.by, wanted.approved_by, wanted.supersedes, head)
         content = _made(bench, wanted, sha256, tests, said)
+        if sha256_of(content_of(wanted.laboratory)) != laboratory:
+            raise UlnaInputError(f"{wanted.laboratory}: was changed while it was read. Try again.")
         kept = bench.files.put(content)
         stated = {
             "arm": arm,

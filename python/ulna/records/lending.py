@@ -44,7 +44,8 @@ def lent(name: str, quantities: Sequence[str], expired_because: str | None) -> L
 
 def _lent(name: str, row: asked.Row, more: str) -> Lent:
     number = f"certificate {row['number']}" if row["number"] else "a certificate without a number"
+    warm = "" if row["temperature_c"] is None else f" at {row['temperature_c']:g} °C"
     until = f", valid to {row['valid_to']}" if row["valid_to"] else ""
     value, u, unit = float(row["value"]), float(row["u"]), row["unit"]
-    said = f"{row['quantity']} {value:.10g} {unit}, u {u:.3g} {unit}, by {number}{until}{more}."
+    said = f"{row['quantity']} {value:.10g} {unit}, u {u:.3g} {unit}{warm}, by {number}{until}{more}."
     return Lent(name, str(row["quantity"]), value, u, said)

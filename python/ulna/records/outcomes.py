@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from sqlalchemy import select
+
+from ulna.checking.result_file import load_check
 from ulna.records import asked
 from ulna.records.bench import Bench
 from ulna.records.filing import ARMS, Filed, Filing, file_all
@@ -41,17 +44,16 @@ class Recording:
         (filed,) = file_all(self.bench, [Filing(path, self.arm, at, artefacts, with_it or {})])
         return filed
 
-    def checks(self) -> list[Path]:
-        """Earlier checks of the arm, as files."""
-        from sqlalchemy import select
-
+    def checks(self, protocol: str) -> list[Path]:
+        """Earlier checks of the arm by a protocol of this name, as files."""
         asked_for = (
             select(FIGURE.c.sha256)
             .where(FIGURE.c.arm == self.arm, FIGURE.c.source == "check", FIGURE.c.sha256.not_in(withdrawn()))
             .distinct()
         )
         with self.bench.reading() as connection:
-            return [self.bench.files.place(sha256) for sha256 in connection.scalars(asked_for)]
+            places = [self.bench.files.place(sha256) for sha256 in connection.scalars(asked_for)]
+        return [each for each in places if load_check(each)[0].protocol.name == protocol]
 
 
 def inputs_of(study: Study) -> dict[str, Path]:

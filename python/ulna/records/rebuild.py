@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
-from sqlalchemy import Connection, delete, inspect, select, text
+from sqlalchemy import Connection, delete, inspect, text
 
 from ulna.ground.errors import UlnaInputError
 from ulna.records import chain, triggers
 from ulna.records.bench import Bench
+from ulna.records.database import DamagedDatabaseError
 from ulna.records.entry import FIRST, Entry
 from ulna.records.place import DATABASE
 from ulna.records.schema import upgrade
@@ -23,29 +24,32 @@ def rebuild(bench: Bench) -> int:
     Raises UlnaInputError where the entries' files are not one chain, or an original is not there: nothing is changed
     then.
     """
-    entries = chained(bench.links)
-    _check(bench.files, entries)
     try:
-        return _anew(bench, entries)
-    except UlnaInputError:
+        return _anew(bench)
+    except DamagedDatabaseError:
         if not bench.database.sqlite or not _aside(bench.folder / DATABASE):
             raise
-        return _anew(bench, entries)
+        return _anew(bench)
 
 
-def _anew(bench: Bench, entries: Sequence[Entry]) -> int:
+def _anew(bench: Bench) -> int:
     with bench.database.writing() as connection:
-        newest = _not_in_files(connection, bench.links)
-        if not entries and not newest and next(bench.files.names(), None) is not None:
+        # while nobody else writes, and with the files that a cut, or another program just now, has not made yet: what
+        # came in between would be lost
+        if inspect(connection).has_table(ENTRY.name):
+            chain.settle(connection, bench.links)
+        entries = chained(bench.links)
+        if not entries and next(bench.files.names(), None) is not None:
             raise UlnaInputError(
                 f"{bench.links.folder}: has no entry, and {bench.files.folder} has files that one must have named; "
                 "expected the files of entries. Restore them from a backup."
             )
+        _check(bench.files, entries)
         _drop(connection)
         upgrade(connection)
-        for entry in [*entries, *newest]:
+        for entry in entries:
             chain.take(connection, bench.files, entry)
-    return len(entries) + len(newest)
+    return len(entries)
 
 
 def index_anew(connection: Connection, files: Store) -> None:
@@ -57,14 +61,6 @@ def index_anew(connection: Connection, files: Store) -> None:
     for entry in list(chain.walk(connection)):
         chain.index(connection, files, entry)
     triggers.guard(connection, METADATA.tables)
-
-
-def _not_in_files(connection: Connection, links: Store) -> list[Entry]:
-    """Entries of the database whose files a cut prevented."""
-    if not inspect(connection).has_table(ENTRY.name):
-        return []
-    rows = connection.execute(select(ENTRY.c.text, ENTRY.c.sha256).order_by(ENTRY.c.seq)).all()
-    return [Entry.of_text(said) for said, sha256 in rows if not links.place(sha256).exists()]
 
 
 def _drop(connection: Connection) -> None:

@@ -123,7 +123,9 @@ def certify(
     """What a certificate says of an artefact. anew: it is registered as well, with these details and its "state"; both
     or nothing. Raises UlnaInputError."""
     if not values:
-        raise UlnaInputError(f"record: no value of '{artefact}' is given; expected one, such as --length 443.172.")
+        raise UlnaInputError(
+            f"record: no value of '{artefact}' is given; expected one, such as length 443.172, u 0.001 mm."
+        )
     for each in values:
         if not (math.isfinite(each.value) and each.value > 0 and math.isfinite(each.u) and each.u >= 0):
             raise UlnaInputError(

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,8 @@ def verify(bench: Bench, heads: Sequence[str] = ()) -> Verified:
         wrong += _files_of_entries(bench.links, entries)
         named = _files(bench.files, entries, wrong)
         remarks += _beside(bench.files, named)
+        if cut := _cut_off(bench.links, entries):
+            remarks.append(f"{cut} of the newest entries without a file in the chain's folder: the next write makes it")
         rows = _rows(connection, bench.files, entries, wrong)
         wrong += _heads(connection, entries, heads)
         seq, sha256 = chain.head(connection)
@@ -108,10 +111,16 @@ def _files_of_entries(links: Store, entries: Sequence[Entry]) -> Iterator[str]:
             yield f"{said} is of no entry in the chain ({_about(text)}): it was taken out, or the chain linked anew"
         elif text.decode(errors="replace") != by_name[name].text:
             yield f"{said} (entry {by_name[name].seq}) was changed"
-    newest = max((entry.seq for entry in entries), default=0)
-    for entry in entries:
-        if entry.seq != newest and not links.place(entry.sha256).exists():
-            yield f"entry {entry.seq} has no file in the chain's folder"
+    missing = [entry.seq for entry in entries if not links.place(entry.sha256).exists()]
+    without = len(missing) - _cut_off(links, entries)
+    yield from (f"entry {seq} has no file in the chain's folder" for seq in missing[:without])
+
+
+def _cut_off(links: Store, entries: Sequence[Entry]) -> int:
+    """How many of the newest entries have no file yet: of a write that was cut off before it made them. Where none of
+    several has one, somebody took them away."""
+    found = sum(1 for _ in takewhile(lambda entry: not links.place(entry.sha256).exists(), reversed(entries)))
+    return found if found < len(entries) or found == 1 else 0
 
 
 def _about(text: bytes) -> str:

@@ -74,7 +74,7 @@ def due_report(found: Sequence[Due]) -> list[RenderableType]:
 
 def impact_report(found: Impact, columns: int) -> list[RenderableType]:
     """From when to when, what, and which certificates."""
-    good = "never found good before" if found.good is None else f"good on {found.good[:10]}"
+    good = "not known to be good before" if found.good is None else f"good on {found.good[:10]}"
     parts: list[RenderableType] = [Text(f"{found.name}: {good}, bad on {found.bad[:10]}: {found.why}.")]
     if not found.touched:
         return [*parts, Text("Nothing was filed or issued meanwhile.")]

@@ -127,8 +127,8 @@ def trend(
     """Say how a figure of an arm goes over time: whether it drifts, when it will meet its limit, whether it is in
     control.
 
-    A straight line with its 95 % prediction, and charts against the first figures: single ones, weighted averages,
-    runs. What too few figures do not tell is said to be so. Exit code 1 where it is out of control.
+    A straight line with its 95 % prediction, and a chart of the newest figure, and of a weighted average,
+    against the first ones. What too few figures do not tell is said to be so. Exit code 1 where it is out of control.
 
     Example: [bold]ulna record trend P7 length_error_rms_mm --state as-found[/bold]
     """
