@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sqlalchemy import Connection, func, select
@@ -236,8 +236,3 @@ def calibrations(connection: Connection, arm: str) -> list[asked.Row]:
         .order_by(CALIBRATION.c.at, CALIBRATION.c.seq)
     )
     return asked.rows(connection, asked_for)
-
-
-def as_dicts(points: list[Any]) -> list[dict[str, Any]]:
-    """The machine form."""
-    return [asdict(each) for each in points]
