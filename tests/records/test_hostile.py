@@ -15,6 +15,7 @@ import pytest
 from fuzzing.structure import spoilt
 from fuzzing.written import json_text
 from tests.records.benches import CROSS_VALIDATION, EVALUATION, RESULT, VERIFICATION, evaluation
+from tests.records.serving import Server
 
 from ulna import UlnaInputError
 from ulna.records.entry import FORMAT, Entry
@@ -314,7 +315,7 @@ def test_a_chart_has_a_baseline(plain: Records, baseline: int) -> None:
 
 
 def test_a_server_without_its_tables_is_said_to_be_so(
-    tmp_path: Path, postgresql: str, database: Callable[[], Any]
+    tmp_path: Path, postgresql: Server, database: Callable[[], Any]
 ) -> None:
     url = database()
     if url is None:
@@ -342,8 +343,8 @@ def test_a_password_is_kept_nowhere(tmp_path: Path) -> None:
     assert not (tmp_path / "bench").exists()
 
 
-def test_a_wrong_password_is_said(tmp_path: Path, postgresql: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wrong_password_is_said(tmp_path: Path, postgresql: Server, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PGPASSWORD", "another")
     with pytest.raises(UlnaInputError, match="password authentication failed") as caught:
-        Records.init(tmp_path / "bench", f"{postgresql}/postgres")
+        Records.init(tmp_path / "bench", f"{postgresql.url}/postgres")
     assert "another" not in str(caught.value)

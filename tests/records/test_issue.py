@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.cli_runs import run
@@ -10,6 +12,9 @@ from tests.pdf_reading import Pdf, holds
 from tests.records.benches import ROOT
 
 from ulna import UlnaInputError
+from ulna.records import chain, issuing
+from ulna.records.bench import Bench
+from ulna.records.issuing import Asked
 from ulna.records.records import Records
 
 LABORATORY = ROOT / "examples" / "platinum" / "laboratory.toml"
@@ -106,3 +111,43 @@ def test_recall_names_the_certificates(bench: Records) -> None:
     number = bench.issue(sha(bench), LABORATORY, form="dcc").number
     found = bench.impact("P7", since="2020-01-01", until="2099-01-01")
     assert found.certificates == [number]
+
+
+@pytest.mark.parametrize("often", [1, 2, 5])
+def test_others_write_while_it_is_made(bench: Records, monkeypatch: pytest.MonkeyPatch, often: int) -> None:
+    """It then names the head that it follows all the same, and the number that is free."""
+    other = Records.open(bench.bench.folder, by="Erika")
+    made, heads = issuing._made, []
+
+    def meanwhile(of: Bench, wanted: Asked, planned: Any, now: datetime) -> bytes:
+        heads.append(planned.head)
+        if len(heads) <= min(often, issuing._TIMES):
+            other.event("P7", "note", f"event {len(heads)}")
+        return made(of, wanted, planned, now)
+
+    monkeypatch.setattr(issuing, "_made", meanwhile)
+    found = bench.issue(sha(bench), LABORATORY, form="dcc")
+    assert len(heads) == min(often, issuing._TIMES) + 1
+    assert found.head == heads[-1]
+    assert found.head.encode() in found.content
+    with bench.bench.reading() as connection:
+        (*_, last) = chain.walk(connection)
+    assert (last.act, last.previous) == ("issued", found.head)
+    assert bench.verify().good
+
+
+def test_a_number_that_was_given_meanwhile_is_another(bench: Records, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = Records.open(bench.bench.folder, by="Erika")
+    made, numbers = issuing._made, []
+
+    def meanwhile(of: Bench, wanted: Asked, planned: Any, now: datetime) -> bytes:
+        numbers.append(planned.number)
+        if len(numbers) == 1:
+            numbers.append(other.issue(sha(bench), LABORATORY, form="dcc").number)
+        return made(of, wanted, planned, now)
+
+    bench.set("numbers", "AB-{n}")
+    monkeypatch.setattr(issuing, "_made", meanwhile)
+    found = bench.issue(sha(bench), LABORATORY, form="dcc").number
+    assert (numbers[0], found) == ("AB-1", "AB-2")
+    assert bench.verify().good

@@ -90,6 +90,19 @@ def test_what_was_withdrawn_is_kept_and_counts_no_longer(records: Records, tmp_p
         records.withdraw(points[1].sha256, "again")
 
 
+def test_what_was_withdrawn_is_not_filed_again(records: Records, tmp_path: Path) -> None:
+    records.register("P8")
+    path, other = evaluation(tmp_path / "e.json", 0.9), evaluation(tmp_path / "f.json", 0.02)
+    (filed,) = records.add(path, arm="P7")
+    day = records.withdraw(filed.sha256, "the wrong probe was on").at[:10]
+    before = records.verify().entries
+    said = rf"e\.json: this file was filed and was withdrawn on {day} by Jan: the wrong probe was on.*write it anew"
+    for arm in ("P7", "P8"):  # under another arm it would count as little
+        with pytest.raises(UlnaInputError, match=said):
+            records.add(other, path, arm=arm)
+    assert records.verify().entries == before
+
+
 def test_due_is_by_the_certificate_of_an_artefact(records: Records) -> None:
     records.certify("KB-443", {"length": (443.1721, 0.001)}, number="EX-2", valid_to="2027-06-30")
     by_name = {each.name: each for each in records.due("2027-07-02")}

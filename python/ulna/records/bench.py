@@ -30,12 +30,15 @@ class Writing:
 
     connection: Connection
     bench: Bench
+    head: tuple[int, str]
+    """Number and SHA-256 of the newest entry: nobody else writes meanwhile."""
     entries: list[Entry] = field(default_factory=list)
 
     def add(self, act: str, subject: str, stated: Mapping[str, Any], files: Mapping[str, str] | None = None) -> Entry:
         """The next entry. Files are in the store already."""
         bench = self.bench
-        entry = chain.append(self.connection, bench.files, bench.by, act, subject, stated, files or {})
+        entry = chain.append(self.connection, bench.files, self.head, bench.by, act, subject, stated, files or {})
+        self.head = entry.seq, entry.sha256
         self.entries.append(entry)
         return entry
 
@@ -101,8 +104,7 @@ class Bench:
         """To add to it: when the block ends without an error, all of it is on the disk. Raises UlnaInputError."""
         with self.database.writing() as connection:
             check_schema(connection, self.folder)
-            chain.settle(connection, self.links)
-            doing = Writing(connection, self)
+            doing = Writing(connection, self, chain.settle(connection, self.links))
             yield doing
         try:
             for entry in doing.entries:

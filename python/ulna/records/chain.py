@@ -37,15 +37,16 @@ def head(connection: Connection) -> tuple[int, str]:
 def append(
     connection: Connection,
     files: Store,
+    after: tuple[int, str],
     actor: str,
     act: str,
     subject: str,
     stated: Mapping[str, Any],
     named: Mapping[str, str],
 ) -> Entry:
-    """The next entry and the rows that follow from it, in a transaction that writes; its file comes after. Raises
-    UlnaInputError where a file that it names cannot be read."""
-    seq, previous = head(connection)
+    """The entry after the newest one, and the rows that follow from it, in a transaction that writes; its file comes
+    after. Raises UlnaInputError where a file that it names cannot be read."""
+    seq, previous = after
     entry = Entry(seq + 1, now(), actor, act, subject, stated, named, previous)
     take(connection, files, entry)
     return entry
@@ -77,13 +78,18 @@ def row_of(entry: Entry) -> dict[str, Any]:
     }
 
 
-def settle(connection: Connection, links: Store) -> None:
-    """The files of the newest entries, where they are not there yet: the oldest first, so that a cut leaves no gap."""
+def settle(connection: Connection, links: Store) -> tuple[int, str]:
+    """The files of the newest entries, where they are not there yet: the oldest first, so that a cut leaves no gap.
+    Number and SHA-256 of the newest entry."""
+    end = head(connection)
+    if end[1] == FIRST or links.place(end[1]).exists():
+        return end
     newest = select(ENTRY.c.text, ENTRY.c.sha256).order_by(ENTRY.c.seq.desc()).limit(_CUT)
     absent = takewhile(lambda row: not links.place(row[1]).exists(), connection.execute(newest))
     for text, name in reversed(list(absent)):
         if sha256_of(text.encode()) == name:  # else it was changed, and no file of that name can be made
             links.put(text.encode())
+    return end
 
 
 def walk(connection: Connection, **only: str) -> Iterator[Entry]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, text
-from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError
+from sqlalchemy.exc import ArgumentError, DBAPIError, OperationalError, SQLAlchemyError
 from sqlalchemy.pool import NullPool
 
 from ulna.ground.errors import UlnaInputError
+from ulna.records.server import engine_of_server
 
 WAIT_S = 60.0
 """For the one that writes."""
@@ -22,12 +23,14 @@ _LOCK = 0x756C6E61
 """PostgreSQL's number of the lock that whoever writes holds: "ulna"."""
 _BEGIN_READING = {"sqlite": "BEGIN", "postgresql": "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"}
 _BEGIN_WRITING = {
-    "sqlite": ("BEGIN IMMEDIATE",),
-    "postgresql": ("BEGIN", f"SET LOCAL lock_timeout = '{WAIT_S:.0f}s'", f"SELECT pg_advisory_xact_lock({_LOCK})"),
+    "sqlite": "BEGIN IMMEDIATE",
+    "postgresql": f"BEGIN; SET LOCAL lock_timeout = '{WAIT_S:.0f}s'; SELECT pg_advisory_xact_lock({_LOCK})",
 }
 _BROKEN = ("malformed", "not a database", "no UTF-8")
 """What SQLite says of a file that is damaged."""
-_BUSY = ("database is locked", "database is busy", "lock timeout")
+_READ_ONLY = "readonly database"
+_BUSY = ("database is locked", "database is busy", "'55P03'")
+"""What SQLite says where another writes, and PostgreSQL's code for that, in every language."""
 
 
 def engine_of(url: str) -> Engine:
@@ -39,10 +42,7 @@ def engine_of(url: str) -> Engine:
         engine = create_engine(made, poolclass=NullPool, connect_args={"isolation_level": None, "timeout": WAIT_S})
         event.listen(engine, "connect", _set_up)
         return engine
-    made = made.set(drivername="postgresql+pg8000")
-    said = os.environ.get(PASSWORD)
-    options = {"timeout": WAIT_S + 10} | ({} if said is None else {"password": said})
-    return create_engine(made, poolclass=NullPool, isolation_level="AUTOCOMMIT", connect_args=options)
+    return engine_of_server(made, os.environ.get(PASSWORD), WAIT_S + 10)
 
 
 def _checked(url: str) -> URL:
@@ -107,6 +107,11 @@ class Database:
         """Whether it is a file of the bench."""
         return self.engine.dialect.name == "sqlite"
 
+    @property
+    def _named(self) -> str:
+        """For messages: the file, or where the server has it."""
+        return str(self.engine.url.database) if self.sqlite else _shown(self.url)
+
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """What all saw at one moment. Raises UlnaInputError where it cannot be asked."""
@@ -115,20 +120,34 @@ class Database:
             try:
                 yield connection
             finally:
-                connection.execute(text("ROLLBACK"))
+                with suppress(SQLAlchemyError):
+                    connection.execute(text("ROLLBACK"))
 
     @contextmanager
     def writing(self) -> Iterator[Connection]:
         """The one that writes: all of it or nothing. Raises UlnaInputError where it cannot be written."""
         with self._said(), self.engine.connect() as connection:
-            for statement in _BEGIN_WRITING[self.engine.dialect.name]:
-                connection.execute(text(statement))
+            connection.execute(text(_BEGIN_WRITING[self.engine.dialect.name]))
             try:
                 yield connection
             except BaseException:
-                connection.execute(text("ROLLBACK"))
+                with suppress(SQLAlchemyError):  # of a connection that was lost nothing is kept anyway
+                    connection.execute(text("ROLLBACK"))
                 raise
+            self._commit(connection)
+
+    def _commit(self, connection: Connection) -> None:
+        """Raises UlnaInputError where a server's answer is lost: then it may have been done."""
+        try:
             connection.execute(text("COMMIT"))
+        except DBAPIError as error:
+            if self.sqlite:
+                raise
+            raise UlnaInputError(
+                f"database {self._named}: the connection was lost while the last entry was being kept "
+                f"({_words(error)}): it is there whole, or nothing of it is. See that the server runs, and what ulna "
+                "record history says before you do it again."
+            ) from None
 
     @contextmanager
     def _said(self) -> Iterator[None]:
@@ -148,14 +167,20 @@ class Database:
 
     def _unusable(self, error: DBAPIError) -> UlnaInputError:
         said = " ".join(_words(error).split())[:200]
-        if any(each in said for each in _BUSY):
+        if any(each in str(error.orig) for each in _BUSY):
             return UlnaInputError(
-                f"database {_shown(self.url)}: another program has been writing to it for {WAIT_S:.0f} s. Try again."
+                f"database {self._named}: another program has been writing to it for {WAIT_S:.0f} s. Try again."
+            )
+        if self.sqlite and _READ_ONLY in said:
+            return UlnaInputError(
+                f"database {self._named}: may not be written by you, and whoever only looks has to write beside it as "
+                "well (its locks); expected a folder that you may write in. Ask whoever keeps the record for that, or "
+                "make one of your own from a backup: ulna record import ZIP DIR."
             )
         return self._damaged(said)
 
     def _damaged(self, said: str) -> UlnaInputError:
-        words = f"database {_shown(self.url)}: cannot be used ({said}). See that it is there and whole."
+        words = f"database {self._named}: cannot be used ({said}). See that it is there and whole."
         if self.sqlite and any(each in said for each in _BROKEN):
             return DamagedDatabaseError(f"{words} If its files are whole: ulna record rebuild.")
         return UlnaInputError(words)

@@ -12,6 +12,7 @@ from ulna.arm.file import result_file
 from ulna.ground.errors import UlnaInputError
 from ulna.records import asked, chain
 from ulna.records.acts.filed import MAIN
+from ulna.records.acts.standing import WITHDRAWN
 from ulna.records.bench import Bench, Writing, checked_text
 from ulna.records.filed.kind import About, FiledKind, in_utc
 from ulna.records.filed.registry import format_of, kind_of
@@ -108,11 +109,25 @@ def _filed(doing: Writing, ready: _Ready) -> Filed:
     stated = dict(ready.stated)
     stated["artefacts"] = [asked.equipment(connection, each, ("artefact",))["name"] for each in ready.filing.artefacts]
     sha256, path, kind = ready.files[MAIN], ready.filing.path, ready.kind.name
+    _stands(connection, sha256, path)
     there = there_already(connection, arm, sha256)
     if there is not None:
         return Filed(path, arm, kind, sha256, there, False)
     entry = doing.add("filed", arm, stated, ready.files)
     return Filed(path, arm, kind, sha256, entry.seq, True)
+
+
+def _stands(connection: Connection, sha256: str, path: Path) -> None:
+    """Raises UlnaInputError for a file that was withdrawn: of whatever arm it is said to be, it would count nowhere."""
+    row = asked.standing(connection, sha256)
+    if row is None or row["state"] != WITHDRAWN:
+        return
+    at, actor = connection.execute(select(ENTRY.c.at, ENTRY.c.actor).where(ENTRY.c.seq == row["seq"])).one()
+    raise UlnaInputError(
+        f"{path}: this file was filed and was withdrawn on {at[:10]} by {actor}: {row['reason']}. It is kept, and "
+        "counts no longer; expected another one. If what was measured holds, let its command write it anew, and add "
+        "that."
+    )
 
 
 def _arm(connection: Connection, name: str, filing: Filing) -> str:

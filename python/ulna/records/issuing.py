@@ -15,12 +15,11 @@ from ulna.documents.laboratory.issued import Issued
 from ulna.ground.errors import UlnaInputError
 from ulna.records import asked, chain
 from ulna.records.acts.setting import NAMES
-from ulna.records.bench import Bench, checked_text
+from ulna.records.bench import Bench, Writing, checked_text
 from ulna.records.filing import ARMS
 from ulna.records.history import calibrations
-from ulna.records.registering import content_of, file_name, keep, may
+from ulna.records.registering import content_of, file_name, may
 from ulna.records.standing import filed
-from ulna.records.store import sha256_of
 from ulna.records.tables import CERTIFICATE, EQUIPMENT, STANDING
 
 
@@ -55,51 +54,89 @@ class IssuedCertificate:
     content: bytes
 
 
+@dataclass(frozen=True)
+class _Planned:
+    """What the record says of it at one moment."""
+
+    result: str
+    """SHA-256 of the calibration."""
+    arm: str
+    tests: list[str]
+    number: str
+    head: str
+
+
 def issue(bench: Bench, wanted: Asked) -> IssuedCertificate:
     """Made, kept and entered, or nothing of it. Raises UlnaInputError for a calibration that was withdrawn or is not
-    filed, for a number that was given, and where a second person is needed."""
-    with bench.writing() as doing:
-        connection = doing.connection
-        sha256, arm = _stands(connection, _last(connection, wanted.result) or wanted.result)
-        tests = [_of(connection, each, arm) for each in wanted.verification]
-        _eyes(connection, bench.by, wanted.approved_by)
-        _superseded(connection, wanted)
+    filed, for a number that was given, and where a second person is needed.
+
+    It takes seconds to be made, in which others may write: where they did, its head, and perhaps its number, is another
+    one, and it is made anew; after some times while nobody else can write.
+    """
+    laboratory = content_of(wanted.laboratory)
+    for _ in range(_TIMES):
         now = datetime.fromisoformat(chain.now())
-        number = checked_text(wanted.number, "number") if wanted.number else _next(connection, now.year)
-        if connection.scalar(select(CERTIFICATE.c.seq).where(CERTIFICATE.c.number == number)) is not None:
-            raise UlnaInputError(
-                f"record: certificate {number} was issued already; expected a new number. Choose another."
-            )
-        _, head = chain.head(connection)
-        laboratory = keep(bench, wanted.laboratory)
-        said = Issued(number, now, bench.by, wanted.approved_by, wanted.supersedes, head)
-        content = _made(bench, wanted, sha256, tests, said)
-        if sha256_of(content_of(wanted.laboratory)) != laboratory:
-            raise UlnaInputError(f"{wanted.laboratory}: was changed while it was read. Try again.")
-        kept = bench.files.put(content)
-        stated = {
-            "arm": arm,
-            "issued_at": now.isoformat(),
-            "names": {"certificate": f"{number}.{_ENDINGS[wanted.form]}", "laboratory": file_name(wanted.laboratory)},
-            "approved_by": wanted.approved_by,
-            "supersedes": wanted.supersedes,
-            "reason": wanted.reason,
-        }
-        files = {"certificate": kept, "laboratory": str(laboratory), "result": sha256}
-        files |= {f"verification {k}": each for k, each in enumerate(tests, start=1)}
-        doing.add("issued", number, {key: value for key, value in stated.items() if value is not None}, files)
-    return IssuedCertificate(number, arm, kept, head, content)
+        with bench.reading() as connection:
+            planned = _planned(connection, bench.by, wanted, now)
+        content = _made(bench, wanted, planned, now)
+        with bench.writing() as doing:
+            if _planned(doing.connection, bench.by, wanted, now) == planned:
+                return _entered(doing, wanted, planned, now, content, laboratory)
+    with bench.writing() as doing:
+        now = datetime.fromisoformat(chain.now())
+        planned = _planned(doing.connection, bench.by, wanted, now)
+        content = _made(bench, wanted, planned, now)
+        return _entered(doing, wanted, planned, now, content, laboratory)
 
 
+def _planned(connection: Connection, by: str, wanted: Asked, now: datetime) -> _Planned:
+    """Raises UlnaInputError for what cannot be issued."""
+    sha256, arm = _stands(connection, _last(connection, wanted.result) or wanted.result)
+    tests = [_of(connection, each, arm) for each in wanted.verification]
+    _eyes(connection, by, wanted.approved_by)
+    _superseded(connection, wanted)
+    number = checked_text(wanted.number, "number") if wanted.number else _next(connection, now.year)
+    if connection.scalar(select(CERTIFICATE.c.seq).where(CERTIFICATE.c.number == number)) is not None:
+        raise UlnaInputError(f"record: certificate {number} was issued already; expected a new number. Choose another.")
+    return _Planned(sha256, arm, tests, number, chain.head(connection)[1])
+
+
+def _entered(
+    doing: Writing, wanted: Asked, planned: _Planned, now: datetime, content: bytes, laboratory: bytes
+) -> IssuedCertificate:
+    """Raises UlnaInputError where the laboratory file is another one by now."""
+    if content_of(wanted.laboratory) != laboratory:
+        raise UlnaInputError(f"{wanted.laboratory}: was changed while it was read. Try again.")
+    number, files = planned.number, doing.bench.files
+    kept = files.put(content)
+    stated = {
+        "arm": planned.arm,
+        "issued_at": now.isoformat(),
+        "names": {"certificate": f"{number}.{_ENDINGS[wanted.form]}", "laboratory": file_name(wanted.laboratory)},
+        "approved_by": wanted.approved_by,
+        "supersedes": wanted.supersedes,
+        "reason": wanted.reason,
+    }
+    named = {"certificate": kept, "laboratory": files.put(laboratory), "result": planned.result}
+    named |= {f"verification {k}": each for k, each in enumerate(planned.tests, start=1)}
+    doing.add("issued", number, {key: value for key, value in stated.items() if value is not None}, named)
+    return IssuedCertificate(number, planned.arm, kept, planned.head, content)
+
+
+_TIMES = 3
+"""That a certificate is made before others have to wait for it."""
 _ENDINGS = {"pdf": "pdf", "dcc": "xml"}
 
 
-def _made(bench: Bench, wanted: Asked, result: str, tests: Sequence[str], said: Issued) -> bytes:
+def _made(bench: Bench, wanted: Asked, planned: _Planned, now: datetime) -> bytes:
     """Of the files as they are in the store, under names that the readers expect."""
+    said = Issued(planned.number, now, bench.by, wanted.approved_by, wanted.supersedes, planned.head)
+    named = {"result.json": planned.result}
+    named |= {f"verification-{k}.json": each for k, each in enumerate(planned.tests)}
     with tempfile.TemporaryDirectory(prefix="ulna-") as folder:
         place = Path(folder)
         paths = []
-        for name, sha256 in (("result.json", result), *((f"verification-{k}.json", t) for k, t in enumerate(tests))):
+        for name, sha256 in named.items():
             (place / name).write_bytes(bench.files.get(sha256))
             paths.append(place / name)
         first, *others = paths

@@ -18,7 +18,7 @@ def migrate(bench: Bench, backup_to: Path) -> Copied | None:
         if found == schema.NEWEST:
             return None
         if found is None or found > schema.NEWEST:
-            schema.check_schema(connection, bench.folder)
+            schema.check_version(found, bench.folder)
     copied = backup(bench, backup_to)
     with bench.database.writing() as connection:
         schema.upgrade(connection)

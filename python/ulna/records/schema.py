@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
+from sqlalchemy.exc import DBAPIError
 
 from ulna.ground.errors import UlnaInputError
 from ulna.records import triggers
@@ -14,19 +15,28 @@ from ulna.records.tables import METADATA
 NEWEST = "r0001"
 """The schema that this Ulna reads and writes: the last of `migrations/versions`."""
 _KEPT = "alembic_version"
+_NOT_THERE = ("no such table", "'42P01'")
+"""What SQLite says of a table that is not there, and PostgreSQL's code for that, in every language."""
 
 
 def schema_of(connection: Connection) -> str | None:
-    """The version that a database has; None of an empty one."""
-    if not inspect(connection).has_table(_KEPT):
+    """The version that a database has; None of an empty one: then a transaction of PostgreSQL does nothing more."""
+    try:
+        found = connection.scalar(text(f"SELECT version_num FROM {_KEPT}"))
+    except DBAPIError as error:  # asking first whether it is there would take longer than all else
+        if not any(each in str(error.orig) for each in _NOT_THERE):
+            raise
         return None
-    found = connection.scalar(text(f"SELECT version_num FROM {_KEPT}"))
     return None if found is None else str(found)
 
 
 def check_schema(connection: Connection, where: Path) -> None:
     """Raises UlnaInputError where a database is of another version."""
-    found = schema_of(connection)
+    check_version(schema_of(connection), where)
+
+
+def check_version(found: str | None, where: Path) -> None:
+    """Raises UlnaInputError for a version that is not this one's; None: of an empty database."""
     if found == NEWEST:
         return
     if found is None:
