@@ -73,6 +73,27 @@ def test_the_whole_way_of_an_arm(tmp_path: Path) -> None:
     assert "schema already" in done("migrate", folder=bench)
 
 
+@pytest.mark.parametrize(("zone", "language"), [("Asia/Kolkata", "C"), ("America/Los_Angeles", "de_DE.UTF-8")])
+def test_what_is_shown_is_the_same_everywhere_and_has_room(tmp_path: Path, zone: str, language: str) -> None:
+    records = Records.init(tmp_path / "bench", by="Jan")
+    records.register("P7", serial="P07-0815", location="measuring room 3, the second table, by the window")
+    records.register("KB-443", "artefact")
+    records.certify("KB-443", {"length": (443.172, 0.001)}, valid_to="2027-01-01")
+    records.event("P7", "knock", "fell against the table while it was carried", at="2026-05-04T23:30+00:00")
+    records.add(EVALUATION, arm="P7", at="2026-06-01")
+    records.interval("P7", 365, why="as it always was")
+    head = records.verify().head
+    shown: dict[str, str] = {}
+    for where in ({"TZ": zone, "LC_ALL": language}, {"TZ": "UTC", "LC_ALL": "en_GB.UTF-8"}):
+        for words in (["list"], ["history", "P7"], ["due", "--on", "2026-12-31"], ["verify"]):
+            said = record(tmp_path / "bench", *words, COLUMNS="60", **where).stdout
+            assert said == shown.setdefault(words[0], said)
+    assert "2026-05-04" in shown["history"]
+    assert f"Head: {head}\n" in shown["verify"], "in one piece, to be copied"
+    for name in ("list", "history", "due"):
+        assert max(len(line.rstrip()) for line in shown[name].splitlines()) <= 60
+
+
 @pytest.fixture(scope="module")
 def pattern(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A record with an arm and a calibration."""

@@ -6,9 +6,11 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select
 
 from ulna import UlnaInputError
 from ulna.records.records import Records
+from ulna.records.tables import FILE
 
 
 @pytest.fixture
@@ -90,6 +92,26 @@ def test_a_place_with_something_in_it_is_refused(archive: Path, tmp_path: Path) 
     with pytest.raises(UlnaInputError, match="there is something already"):
         Records.from_export(archive, tmp_path / "new")
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["mine"]
+
+
+def test_nothing_is_imported_into_a_record(archive: Path, tmp_path: Path) -> None:
+    records = Records.init(tmp_path / "here", by="Jan")
+    records.register("P7")
+    before = records.verify()
+    with pytest.raises(UlnaInputError, match=r"here: is a record already; .*joins none.* ulna record add FILE"):
+        Records.from_export(archive, tmp_path / "here")
+    assert records.verify() == before
+
+
+def test_what_one_record_lacks_is_written_out_of_another(archive: Path, tmp_path: Path) -> None:
+    """As the docs say it."""
+    theirs = Records.from_export(archive, tmp_path / "theirs")
+    ours = Records.init(tmp_path / "ours", by="Erika")
+    ours.register("P7")
+    with theirs.bench.reading() as connection:
+        (sha256,) = connection.scalars(select(FILE.c.sha256))
+    (tmp_path / "again.txt").write_bytes(theirs.content(sha256))
+    assert ours.add(tmp_path / "again.txt", arm="P7")[0].sha256 == sha256
 
 
 def test_a_backup_is_made_once_and_read_again(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from ulna.ground.version import VERSION
 from ulna.records import chain
 from ulna.records.bench import Bench
 from ulna.records.entry import FIRST, Entry
-from ulna.records.place import FILES, LINKS
+from ulna.records.place import BENCH, FILES, LINKS
 from ulna.records.rebuild import entry_of, in_order, rebuild
 from ulna.records.store import sha256_of
 
@@ -73,6 +73,12 @@ def backup(bench: Bench, folder: Path) -> Copied:
 def imported(path: Path, folder: Path, database: str | None = None, by: str | None = None) -> Copied:
     """A new record from a zip: the same chain. Raises UlnaInputError for a zip that is none, or is damaged: then
     nothing is made."""
+    if (folder / BENCH).exists():
+        raise UlnaInputError(
+            f"{folder}: is a record already; expected a new or an empty folder: an import makes a record and joins "
+            "none, since each has a chain of its own. Name another, and file what is missing here: ulna record show "
+            "FILE --records THERE -o FILE, ulna record add FILE."
+        )
     with _opened(path) as archive:
         said = _checked(archive, path)
         bench = Bench.make(folder, database, by)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.console import RenderableType
+from rich.table import Table
 from rich.text import Text
 
 from ulna.cli.printed.tables import table
@@ -16,19 +17,19 @@ from ulna.records.impact import Impact
 from ulna.records.verify import Verified
 
 _LATEST = 30
-_NARROWEST = 24
-_GAPS = 8
+_NARROWEST = 16
+_GAP = 2
 """Between the columns of a table."""
 _MOST_WRONG = 40
 
 
-def listed_report(found: Sequence[Mapping[str, Any]]) -> list[RenderableType]:
-    """Equipment as it is now."""
+def listed_report(found: Sequence[Mapping[str, Any]], columns: int) -> list[RenderableType]:
+    """Equipment as it is now; columns: of the terminal."""
     if not found:
         return [Text("Nothing is registered yet. Register an arm: ulna record arm NAME --serial NUMBER")]
     names = ("name", "kind", "state", "serial", "model", "location")
     rows = [[str(row[name] or "") for name in names] for row in found]
-    return [table("", names, rows, left=len(names))]
+    return [table("", names, _broken(rows, names.index("location"), columns, names), left=len(names))]
 
 
 def history_report(name: str, found: Sequence[Happening], everything: bool, columns: int) -> list[RenderableType]:
@@ -46,30 +47,31 @@ def _lines(title: str, found: Sequence[Happening], columns: int) -> list[Rendera
         (each.at[:10], each.what, each.text if each.sha256 is None else f"{each.text} ({each.sha256[:8]})", each.by)
         for each in found
     ]
-    others = sum(max((len(row[k]) for row in rows), default=0) for k in (1, 3)) + len("2026-11-30") + _GAPS
-    room = max(columns - others, _NARROWEST)
-    broken = [
-        (*((day, what) if first else ("", "")), line, by if first else "")
-        for day, what, text, by in rows
-        for first, line in _broken(text, room)
+    heads = ("day", "", "", "by")
+    return [table(title, heads, _broken(rows, 2, columns, heads), left=4)]
+
+
+def _broken(rows: Sequence[Sequence[str]], at: int, columns: int, heads: Sequence[str]) -> list[list[str]]:
+    """Rows whose text in one column goes on in rows below it, so that they have room."""
+    widths = [max((len(row[k]) for row in [heads, *rows]), default=0) for k in range(len(heads))]
+    room = max(columns - sum(widths) + widths[at] - _GAP * (len(heads) - 1), _NARROWEST)
+    return [
+        [line if k == at else each * (number == 0) for k, each in enumerate(row)]
+        for row in rows
+        for number, line in enumerate(textwrap.wrap(row[at], room) or [""])
     ]
-    return [table(title, ("day", "", "", "by"), broken, left=4)]
 
 
-def _broken(text: str, room: int) -> list[tuple[bool, str]]:
-    lines = textwrap.wrap(text, room) or [""]
-    return [(k == 0, line) for k, line in enumerate(lines)]
-
-
-def due_report(found: Sequence[Due]) -> list[RenderableType]:
-    """The soonest first."""
+def due_report(found: Sequence[Due], columns: int) -> list[RenderableType]:
+    """The soonest first; columns: of the terminal."""
     if not found:
         return [Text("Nothing is registered yet.")]
     rows = [
         (each.name, each.kind, each.state, each.why, each.due or "-", "-" if each.days is None else str(each.days))
         for each in found
     ]
-    return [table("", ("name", "kind", "state", "why", "due", "days"), rows, left=4)]
+    heads = ("name", "kind", "state", "why", "due", "days")
+    return [table("", heads, _broken(rows, heads.index("why"), columns, heads), left=4)]
 
 
 def impact_report(found: Impact, columns: int) -> list[RenderableType]:
@@ -95,4 +97,9 @@ def verified_report(found: Verified) -> list[RenderableType]:
         if count > _MOST_WRONG:
             parts.append(Text(f"- and {count - _MOST_WRONG} more"))
     parts += [Text(f"Remark: {each}.") for each in found.remarks]
-    return [*parts, Text(f"Head: {found.head}")] if found.head else parts
+    if found.head:
+        whole = Table.grid()  # a text would be broken where the terminal ends, and this one is to be copied
+        whole.add_column(no_wrap=True)
+        whole.add_row(f"Head: {found.head}")
+        parts.append(whole)
+    return parts

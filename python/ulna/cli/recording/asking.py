@@ -79,7 +79,7 @@ def due(
     if as_json:
         output.print_json({"due": [asdict(each) for each in found]})
     else:
-        output.print_renderable(*due_report(found))
+        output.print_renderable(*due_report(found, output.columns()))
     raise typer.Exit(int(any(each.days is not None and each.days < 0 for each in found)))
 
 

@@ -85,7 +85,7 @@ def list_(
     if as_json:
         output.print_json({"equipment": found})
     else:
-        output.print_renderable(*listed_report(found))
+        output.print_renderable(*listed_report(found, output.columns()))
 
 
 @guard
