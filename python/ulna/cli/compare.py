@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ulna.cli.options import All, Force, Json
 from ulna.cli.running import guard
+
+if TYPE_CHECKING:
+    from ulna.comparison.compare import Comparison
 
 
 @guard
@@ -46,25 +50,38 @@ def compare(
     Example: [bold]ulna compare out-2025 out-2026[/bold]
     """
     from ulna.cli import output
-    from ulna.cli.endings import by_ending
     from ulna.cli.printed.comparison import comparison_report
     from ulna.comparison.compare import compare as run_compare
-    from ulna.formats.output import check_output, refuse_inputs, write_file
-    from ulna.ground.extras import need
 
-    if picture is not None:
-        need("option --picture", "matplotlib")
-        (form,) = by_ending(picture, {".png": "png", ".svg": "svg", ".pdf": "pdf"}, [], folder=False)
-        refuse_inputs([picture], results)
-        check_output(picture.parent, [picture.name], force)
+    form = "" if picture is None else picture_form(picture, results, force)
     found = run_compare(*results, probe=probe, shared_u=shared_u)
     if as_json:
         output.print_json(found.as_dict())
     else:
         output.print_renderable(*comparison_report(found, everything))
     if picture is not None:
-        from ulna.documents.drawn.comparison import drawn
-
-        write_file(picture, drawn(found, form), force)
-        output.say(f"Written: {picture}")
+        write_picture(picture, found, form, force)
     raise typer.Exit(int(any(step.moved for step in found.steps)))
+
+
+def picture_form(picture: Path, inputs: Sequence[Path], force: bool) -> str:
+    """By its ending, asked before the long work. Raises UlnaInputError for a place where it cannot be written."""
+    from ulna.cli.endings import by_ending
+    from ulna.formats.output import check_output, refuse_inputs
+    from ulna.ground.extras import need
+
+    need("option --picture", "matplotlib")
+    (form,) = by_ending(picture, {".png": "png", ".svg": "svg", ".pdf": "pdf"}, [], folder=False)
+    refuse_inputs([picture], inputs)
+    check_output(picture.parent, [picture.name], force)
+    return form
+
+
+def write_picture(picture: Path, found: Comparison, form: str, force: bool) -> None:
+    """Draw it, and say so."""
+    from ulna.cli import output
+    from ulna.documents.drawn.comparison import drawn
+    from ulna.formats.output import write_file
+
+    write_file(picture, drawn(found, form), force)
+    output.say(f"Written: {picture}")

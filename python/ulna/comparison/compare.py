@@ -103,6 +103,9 @@ class Compared:
     """U = k u for 95 %."""
     changes: Changes = field(compare=False, repr=False)
     """For pictures; the machine form has the bands."""
+    between: list[str] = field(default_factory=list)
+    """What was done to the arm between them, where a record knows it: then the earlier is as found, the later as
+    left."""
 
     @property
     def moved(self) -> bool:

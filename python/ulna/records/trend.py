@@ -17,12 +17,11 @@ from ulna.control.until import Until, until
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.records import asked
+from ulna.records.acts.event import BREAKS
 from ulna.records.history import Point, figures
 from ulna.records.tables import EVENT
 
 LONGEST_BASELINE = 20
-_BREAKS = ("adjustment", "repair", "firmware")
-"""Events after which an arm may be another one."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ def _one_kind(points: Sequence[Point], figure: str) -> None:
 def _breaks(connection: Connection, arm: str, points: Sequence[Point]) -> list[str]:
     asked_for = (
         select(EVENT)
-        .where(EVENT.c.equipment == arm, EVENT.c.kind.in_(_BREAKS))
+        .where(EVENT.c.equipment == arm, EVENT.c.kind.in_(BREAKS))
         .where(EVENT.c.at > points[0].at, EVENT.c.at <= points[-1].at)
         .order_by(EVENT.c.at)
     )

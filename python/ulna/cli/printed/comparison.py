@@ -25,6 +25,7 @@ def comparison_report(found: Comparison, everything: bool = False) -> list[Rende
 
 def _step(step: Compared, everything: bool) -> list[RenderableType]:
     parts: list[RenderableType] = [Text(f"{step.before} → {step.after}: {verdict(step)}"), Text(_largest(step))]
+    parts += [Text(f"Between them: {each}.") for each in step.between]
     bands = [
         (
             f"{band.least_mm:.0f} to {band.most_mm:.0f}",

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ulna.cli.options import All, Json
+from ulna.cli.options import All, Force, Json
 from ulna.cli.recording.options import Arm, By, Name, Where, opened
 from ulna.cli.running import guard
 
@@ -44,21 +45,33 @@ def compare(
         float, typer.Option("--shared-u", metavar="RATIO", help="As of ulna compare: u over length of a bar of both.")
     ] = 0.0,
     everything: All = False,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", metavar="FILE", help="As of ulna compare: PNG, SVG or PDF."),
+    ] = None,
     where: Where = None,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Compare the last calibrations of an arm, as ulna compare does. Exit code 1 where it has moved.
 
+    Where it was adjusted, repaired or given another firmware between two of them, that is said, and they are called as
+    found and as left.
+
     Example: [bold]ulna record compare P7 --last 3[/bold]
     """
     from ulna.cli import output
+    from ulna.cli.compare import picture_form, write_picture
     from ulna.cli.printed.comparison import comparison_report
 
+    form = "" if picture is None else picture_form(picture, [], force)
     found = opened(where).compare(arm, last, probe, shared_u)
     if as_json:
         output.print_json(found.as_dict())
     else:
         output.print_renderable(*comparison_report(found, everything))
+    if picture is not None:
+        write_picture(picture, found, form, force)
     raise typer.Exit(int(any(step.moved for step in found.steps)))
 
 

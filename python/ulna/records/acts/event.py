@@ -10,6 +10,8 @@ from ulna.records.store import Store
 from ulna.records.tables import EVENT
 
 KINDS = ("knock", "repair", "move", "adjustment", "firmware", "quarantine", "release", "note")
+BREAKS = ("adjustment", "repair", "firmware")
+"""Events after which an arm may be another one: what was before is as found, what comes after as left."""
 STATE_AFTER = {"quarantine": "quarantined", "release": "in use"}
 """Events that change whether equipment may be used."""
 
