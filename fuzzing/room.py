@@ -169,6 +169,8 @@ COMMANDS = [
     "batch made -o batched",
     "plan arm.toml plan.toml -o planned",
     "verify fossils/verify-own.toml -o tested",
+    "record init bench",
+    "record arm small --records bench",
 ]
 """What makes the other documents."""
 WHEN = "2026-01-01T00:00:00+00:00"

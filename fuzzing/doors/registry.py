@@ -306,6 +306,36 @@ DOORS: dict[str, Door] = {
             short=12,
         ),
         Door(
+            "record",
+            JsonDoor(
+                [
+                    "out/result.json",
+                    "judged/evaluation.json",
+                    "crossed/cross-validation.json",
+                    "tested/verification.json",
+                    "fossils/result-1.json",
+                    "fossils/check-1.json",
+                ],
+                [
+                    "record add {file} --arm small --records bench",
+                    "record add {file} --arm small --at 2026-01-01 --records bench --json",
+                ],
+            ),
+            short=25,
+        ),
+        Door(
+            "record added to",
+            TomlDoor(
+                [
+                    "bench/bench.toml",
+                ],
+                [
+                    "record list --records bench",
+                    "record add task.csv --arm small --records bench",
+                ],
+            ),
+        ),
+        Door(
             "plan result",
             JsonDoor(
                 [
