@@ -70,9 +70,7 @@ DOORS: dict[str, Door] = {
         Door(
             "arm",
             TomlDoor(
-                [
-                    "arm.toml",
-                ],
+                ["arm.toml"],
                 _ARM,
             ),
         ),
@@ -102,9 +100,7 @@ DOORS: dict[str, Door] = {
         Door(
             "study calibrated",
             TomlDoor(
-                [
-                    "made/study.toml",
-                ],
+                ["made/study.toml"],
                 [
                     "calibrate {file} -o again",
                     "cross-validate {file} --by artefact",
@@ -129,12 +125,8 @@ DOORS: dict[str, Door] = {
         Door(
             "plan",
             TomlDoor(
-                [
-                    "plan.toml",
-                ],
-                [
-                    "plan arm.toml {file} -o p",
-                ],
+                ["plan.toml"],
+                ["plan arm.toml {file} -o p"],
             ),
             seconds=90.0,
             short=3,
@@ -147,9 +139,7 @@ DOORS: dict[str, Door] = {
                     "task.toml",
                     "fossils/task-1.toml",
                 ],
-                [
-                    "uncertainty out/result.json {file} --trials 20",
-                ],
+                ["uncertainty out/result.json {file} --trials 20"],
             ),
         ),
         Door(
@@ -160,9 +150,7 @@ DOORS: dict[str, Door] = {
                     "volume.toml",
                     "fossils/volume-1.toml",
                 ],
-                [
-                    "uncertainty out/result.json {file} --trials 5",
-                ],
+                ["uncertainty out/result.json {file} --trials 5"],
             ),
             seconds=90.0,
             short=6,
@@ -175,9 +163,7 @@ DOORS: dict[str, Door] = {
                     "performance.toml",
                     "fossils/performance-1.toml",
                 ],
-                [
-                    "uncertainty arm.toml task.toml --performance {file} --trials 20",
-                ],
+                ["uncertainty arm.toml task.toml --performance {file} --trials 20"],
             ),
             seconds=30.0,
             short=10,
@@ -185,9 +171,7 @@ DOORS: dict[str, Door] = {
         Door(
             "profile",
             TomlDoor(
-                [
-                    "fossils/profile-1.toml",
-                ],
+                ["fossils/profile-1.toml"],
                 [
                     "verify --make-plan {file} -o p",
                     "verify fossils/verify-1.toml",
@@ -215,9 +199,7 @@ DOORS: dict[str, Door] = {
                     "fossils/lab-1.toml",
                     "fossils/lab-1-cmc.toml",
                 ],
-                [
-                    "certificate out/result.json {file} -o c.xml",
-                ],
+                ["certificate out/result.json {file} -o c.xml"],
             ),
         ),
         Door(
@@ -238,9 +220,7 @@ DOORS: dict[str, Door] = {
                     "batched/study/result.json",
                     "batched/batch.json",
                 ],
-                [
-                    "batch made -o batched",
-                ],
+                ["batch made -o batched"],
             ),
         ),
         Door(
@@ -261,9 +241,7 @@ DOORS: dict[str, Door] = {
                     "crossed/cross-validation.json",
                     "fossils/cross-validation-1.json",
                 ],
-                [
-                    "report out/result.json -o r.html --cross-validation {file}",
-                ],
+                ["report out/result.json -o r.html --cross-validation {file}"],
             ),
             short=12,
         ),
@@ -282,9 +260,7 @@ DOORS: dict[str, Door] = {
         Door(
             "protocol",
             TomlDoor(
-                [
-                    "fossils/protocol-1.toml",
-                ],
+                ["fossils/protocol-1.toml"],
                 [
                     "check {file} fossils/protocol-1.csv",
                     "check {file} fossils/protocol-1.csv --date 2030-01-01 --history fossils/check-1.json --json",
@@ -294,9 +270,7 @@ DOORS: dict[str, Door] = {
         Door(
             "check",
             JsonDoor(
-                [
-                    "fossils/check-1.json",
-                ],
+                ["fossils/check-1.json"],
                 [
                     "check fossils/protocol-1.toml fossils/protocol-1.csv --date 2030-01-01 --history {file}",
                     "check fossils/protocol-1.toml fossils/protocol-1.csv --date 2030-01-01 --history {file} "
@@ -326,9 +300,7 @@ DOORS: dict[str, Door] = {
         Door(
             "record added to",
             TomlDoor(
-                [
-                    "bench/bench.toml",
-                ],
+                ["bench/bench.toml"],
                 [
                     "record list --records bench",
                     "record add task.csv --arm small --records bench",
@@ -338,9 +310,7 @@ DOORS: dict[str, Door] = {
         Door(
             "plan result",
             JsonDoor(
-                [
-                    "planned/plan.json",
-                ],
+                ["planned/plan.json"],
                 [
                     "plan planned --check made/study.toml",
                     "simulate --plan planned -o tried",
@@ -351,9 +321,7 @@ DOORS: dict[str, Door] = {
         Door(
             "URDF",
             TextDoor(
-                [
-                    "robot.urdf",
-                ],
+                ["robot.urdf"],
                 [
                     "import urdf {file} -o a.toml",
                     "show {file} -o s.html",
@@ -366,9 +334,7 @@ DOORS: dict[str, Door] = {
         Door(
             "DH table",
             TextDoor(
-                [
-                    "dh.csv",
-                ],
+                ["dh.csv"],
                 [
                     "import dh {file} -o a.toml --convention dh",
                     "import dh {file} -o a.toml --convention modified-dh --tip 1 2 3",
