@@ -48,6 +48,30 @@ def test_a_spoilt_study_stops_no_other(arms: Path, tmp_path: Path) -> None:
     assert found["studies"][2]["rms_mm"] == pytest.approx(alone.fit.rms_mm, rel=1e-12)
 
 
+@pytest.mark.parametrize("earlier", [False, True], ids=["none before", "an earlier list"])
+def test_a_list_that_appears_meanwhile_stays(
+    arms: Path, tmp_path: Path, earlier: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another batch into one folder, which was done first."""
+    out = tmp_path / "out"
+    theirs = '{"format": "ulna-batch/1", "studies": []}'
+    if earlier:
+        ulna.batch(arms, out, only="press/*")
+
+    def late(study: ulna.Study) -> ulna.Result:
+        (out / "batch.json").parent.mkdir(exist_ok=True)
+        (out / "batch.json").write_text(theirs)
+        return ulna.calibrate(study)
+
+    monkeypatch.setattr("ulna.calibration.batch.calibrate", late)
+    with pytest.raises(ulna.UlnaInputError, match=r"batch\.json: exists already and is not overwritten"):
+        ulna.batch(arms, out, only="weld/*")
+    assert (out / "batch.json").read_text() == theirs
+    assert (out / "weld" / "study" / "result.json").is_file()
+    ulna.batch(arms, out, only="weld/*", force=True)
+    assert "weld/study" in (out / "batch.json").read_text()
+
+
 def test_what_is_done_is_kept_and_the_rest_is_done(arms: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     ulna.batch(arms, out)

@@ -12,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from ulna.formats.output import output_folder, write_file
+from ulna.formats import arriving, moving
+from ulna.formats.output import new_file, output_folder, write_file
+from ulna.formats.toml import sha256
 from ulna.ground.errors import UlnaInputError
 
 NAMES = ("result.json", "arm.toml", "residuals.csv")
@@ -133,6 +135,67 @@ def test_what_somebody_writes_meanwhile_is_not_overwritten(tmp_path: Path) -> No
             write_late()
         assert standing(out) == {"arm.toml": "t"}
         (out / "arm.toml").unlink()
+
+
+def test_what_somebody_writes_beside_it_meanwhile_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As editors do it: a new file takes the old one's name, just before the folders change places."""
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "notes.txt").write_text("old")
+    swap = arriving.swap
+
+    def late(one: Path, other: Path) -> bool:
+        (tmp_path / "edited").write_text("new")
+        (tmp_path / "edited").replace(out / "notes.txt")
+        (out / "more.txt").write_text("more")
+        return swap(one, other)
+
+    monkeypatch.setattr(arriving, "swap", late)
+    with output_folder(out, NAMES) as staging:
+        for name in NAMES:
+            (staging / name).write_text("2")
+    assert standing(out) == dict.fromkeys(NAMES, "2") | {"notes.txt": "n", "more.txt": "m"}
+
+
+@pytest.mark.parametrize("swaps", [True, False])
+@pytest.mark.parametrize("meanwhile", ["rewritten", "a link", "gone", "nothing"])
+def test_only_what_was_known_is_replaced(
+    tmp_path: Path, meanwhile: str, swaps: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not swaps:
+        monkeypatch.setattr(moving, "_call", lambda: None)
+    path, other = tmp_path / "list.json", tmp_path / "other"
+    path.write_text("1")
+    other.write_text("1")
+
+    def write() -> None:
+        with new_file(path, instead_of=sha256(b"1")) as staged:
+            staged.write_text("2")
+            if meanwhile == "rewritten":
+                path.write_text("theirs")
+            if meanwhile in ("a link", "gone"):
+                path.unlink()
+            if meanwhile == "a link":
+                path.symlink_to(other)
+
+    if meanwhile in ("gone", "nothing"):
+        write()
+        assert path.read_text() == "2"
+    else:
+        with pytest.raises(UlnaInputError, match="another program wrote it meanwhile"):
+            write()
+        assert path.read_text() == ("theirs" if meanwhile == "rewritten" else "1")
+        assert path.is_symlink() == (meanwhile == "a link")
+    assert other.read_text() == "1"
+    assert {each.name for each in tmp_path.iterdir()} == {"list.json", "other"}
+
+
+def test_nobody_waits_for_ever_for_a_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody else's lock stays taken."""
+    monkeypatch.setattr(moving, "PATIENCE_S", 0.05)
+    with moving.alone(tmp_path):
+        write_file(tmp_path / "a.txt", "1")
+    assert (tmp_path / "a.txt").read_text() == "1"
 
 
 def test_where_nobody_may_write_beside_a_folder_it_is_written_into_it(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -153,6 +154,35 @@ def test_another_jobs_work_is_not_taken(tmp_path: Path) -> None:
         Ledger(tmp_path / "full", job_of(study, truth, 50, 1))
     with pytest.raises(UlnaInputError, match="cannot be used"):
         Ledger(tmp_path / "full" / "letter.txt", job_of(study, truth, 50, 1))
+
+
+def test_two_who_begin_at_once_keep_one_job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    link = os.link
+
+    def late(one: Path, other: Path) -> None:
+        monkeypatch.undo()
+        other.write_text('{"format": "ulna-job/1", "seed": 2}')
+        link(one, other)
+
+    monkeypatch.setattr(os, "link", late)
+    with pytest.raises(UlnaInputError, match="keeps another job's work; seed is not what is asked now"):
+        Ledger(tmp_path / "job", {"seed": 1})
+    assert [path.name for path in (tmp_path / "job").iterdir()] == ["job.json"]
+
+    ledger = Ledger(tmp_path / "job", {"seed": 2})
+    save = np.savez
+
+    def both(*arguments: Any, **named: Any) -> None:  # another run of the job keeps the piece while this one does
+        monkeypatch.undo()
+        ledger.keep(0, {"a": np.zeros(3)})
+        save(*arguments, **named)
+
+    monkeypatch.setattr(np, "savez", both)
+    ledger.keep(0, {"a": np.zeros(3)})
+    kept = ledger.kept(0)
+    assert kept is not None
+    assert kept["a"].tolist() == [0.0, 0.0, 0.0]
+    assert {path.name for path in (tmp_path / "job").iterdir()} == {"job.json", "piece-0.npz"}
 
 
 def test_noise_must_be_stated() -> None:

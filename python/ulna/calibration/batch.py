@@ -133,7 +133,7 @@ def batch(
     folder, out = Path(folder), Path(out)
     named = studies_in(folder, only)
     listed = out / LIST
-    _check_list(listed, force)
+    earlier = _earlier_list(listed, force)
     done: dict[str, Calibrated] = {}
     told = progress if progress is not None else lambda *_: None
     told("studies", 0, len(named))
@@ -144,25 +144,24 @@ def batch(
         told("studies", len(done), len(named))
     found = Batch([done[name] for name in named])
     text = json.dumps(found.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-    write_file(listed, text + "\n", force=True)
+    write_file(listed, text + "\n", force, instead_of=earlier)
     return found
 
 
-def _check_list(listed: Path, force: bool) -> None:
-    """Only an earlier list of a batch is replaced, asked before the work. Raises UlnaInputError."""
-    if force and not listed.is_symlink():
-        return
-    if not os.path.lexists(listed):
-        return
-    ours = False
+def _earlier_list(listed: Path, force: bool) -> str | None:
+    """The SHA-256 of an earlier list of a batch, which is replaced as nothing else is; asked before the work. Raises
+    UlnaInputError."""
+    if (force and not listed.is_symlink()) or not os.path.lexists(listed):
+        return None
     if listed.is_file() and not listed.is_symlink():
         with suppress(UlnaInputError):
-            ours = read_json(listed, "a list of a batch")[0].get("format") == FORMAT
-    if not ours:
-        raise UlnaInputError(
-            f"{listed}: is no list of an earlier batch, and is not overwritten. Name another folder with -o"
-            + (", or remove the link." if listed.is_symlink() else ", or give --force.")
-        )
+            earlier, stands = read_json(listed, "a list of a batch")
+            if earlier.get("format") == FORMAT:
+                return stands
+    raise UlnaInputError(
+        f"{listed}: is no list of an earlier batch, and is not overwritten. Name another folder with -o"
+        + (", or remove the link." if listed.is_symlink() else ", or give --force.")
+    )
 
 
 @dataclass(frozen=True)

@@ -41,9 +41,10 @@ class Reproduction(Protocol):
 class ReproductionModule(Protocol):
     """A module that the registry names."""
 
-    def run(self, out: Path | None, progress: Progress | None) -> Reproduction:
+    def run(self, out: Path | None, progress: Progress | None, *, force: bool = True) -> Reproduction:
         """Rerun the study; where `out` is given, write its pictures and tables into that folder (made whole or not
-        at all). `progress` is called as in the core. Raises KeyboardInterrupt when interrupted."""
+        at all), over what has appeared there only by `force`. `progress` is called as in the core. Raises
+        KeyboardInterrupt when interrupted."""
 
 
 @guard
@@ -81,7 +82,7 @@ def reproduce(
         raise UlnaInputError(f"{out}: exists already and is not overwritten. Name another folder, or give --force.")
     module = cast("ReproductionModule", importlib.import_module(STUDIES[name][1]))
     with output.progress_bar() as progress:
-        found = module.run(out, progress)
+        found = module.run(out, progress, force=force)
     if as_json:
         output.print_json(found.as_dict())
     else:

@@ -80,9 +80,10 @@ def _swapped(staging: Path, folder: Path, ours: set[str], force: bool) -> bool:
     if late is not None:
         swap(staging, folder)
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder / late))
-    for path in _besides(staging, ours):  # what somebody put there meanwhile
-        if not os.path.lexists(folder / path.name):
-            path.rename(folder / path.name)
+    for path in _besides(staging, ours):  # what somebody put there meanwhile, or wrote anew
+        here = folder / path.name
+        if not os.path.lexists(here) or not os.path.samestat(path.lstat(), here.lstat()):
+            path.replace(here)
     return True
 
 

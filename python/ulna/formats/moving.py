@@ -6,15 +6,23 @@ import ctypes
 import errno
 import os
 import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from ulna.formats.toml import sha256
 
 _AT_FDCWD = -100
 _NO_REPLACE, _EXCHANGE = 1, 2
 _SWAP_OF_DARWIN, _EXCL_OF_DARWIN = 2, 4
 _NOT_HERE = (errno.ENOSYS, errno.EINVAL, errno.ENOTSUP, errno.EOPNOTSUPP)
 """What a system or a file system answers that cannot do it."""
+
+PATIENCE_S = 5.0
+"""Of one who waits for another to have moved its files: it takes milliseconds."""
 
 
 def place_new(staged: Path, target: Path) -> None:
@@ -31,6 +39,64 @@ def place_new(staged: Path, target: Path) -> None:
         staged.replace(target)
         return
     staged.unlink()
+
+
+def place_instead(staged: Path, target: Path, known: str) -> None:
+    """A file to where one of this SHA-256 is, and no other one: what somebody put there since is not lost. Raises
+    FileExistsError; OSError."""
+    try:
+        swapped = swap(staged, target)
+    except FileNotFoundError:
+        swapped = False
+    if not swapped and not os.path.lexists(target):  # taken away meanwhile
+        place_new(staged, target)
+        return
+    there = staged if swapped else target
+    if there.is_symlink() or not there.is_file() or sha256(there.read_bytes()) != known:
+        if swapped:
+            swap(staged, target)
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
+    staged.unlink() if swapped else staged.replace(target)
+
+
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """While files move into a folder, no other process of ours moves any there.
+
+    Each step is safe by itself; of several, two who overwrite one result would leave some files of each. Where a disk
+    has no locks, or somebody else keeps this one, nobody waits for ever.
+    """
+    handle = _locked(folder)
+    try:
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
+
+
+def _locked(folder: Path) -> int | None:
+    """A handle to be closed; None where there is no lock."""
+    if sys.platform == "win32":
+        return None
+    import fcntl
+
+    try:
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    except OSError:
+        return None
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(0.001)
+        except OSError:
+            break
+        else:
+            return handle
+    with suppress(OSError):
+        os.close(handle)
+    return None
 
 
 def place_new_folder(staged: Path, target: Path) -> None:

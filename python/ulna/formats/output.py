@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ulna.formats.arriving import arrive
-from ulna.formats.moving import flush, place_new, umask
+from ulna.formats.moving import alone, flush, place_instead, place_new, umask
 from ulna.formats.names import check_path
 from ulna.ground.errors import UlnaInputError
 
@@ -102,7 +102,7 @@ def output_folder(
         try:
             for name in names:
                 flush(staging / name)
-            with MOVING:
+            with MOVING, alone(place.parent):
                 arrive(staging, place, names, instead_of, force)
                 FINISHED.append(folder)
         except FileExistsError as error:
@@ -133,21 +133,24 @@ def _staged_folder(place: Path) -> Path:
     return staging
 
 
-def write_file(path: str | Path, content: str | bytes, force: bool = False) -> None:
+def write_file(path: str | Path, content: str | bytes, force: bool = False, instead_of: str | None = None) -> None:
     """Write one file, whole or not at all. Raises UlnaInputError where it exists and `force` is not given."""
     path = Path(path)
-    with new_file(path, force=force) as staged:
+    with new_file(path, force, instead_of) as staged:
         staged.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
 @contextmanager
-def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
-    """A staging path to write one file to, of any size; it appears at `path` when the block ends without an error."""
+def new_file(path: str | Path, force: bool = False, instead_of: str | None = None) -> Iterator[Path]:
+    """A staging path to write one file to, of any size; it appears at `path` when the block ends without an error.
+
+    instead_of: the SHA-256 of what stood there when the work began, which may be replaced also without `force`.
+    """
     path = Path(path)
     check_path(path)
     if path.is_dir():
         raise UlnaInputError(f"{path}: this is a folder; expected a file name to write to.")
-    if path.exists() and not force:
+    if path.exists() and not force and instead_of is None:
         raise UlnaInputError(f"{path}: exists already and is not overwritten. Name another file, or give --force.")
     staged, made = _staging(path.parent, path.stem, path.suffix), list[Path]()
     try:
@@ -165,11 +168,13 @@ def new_file(path: str | Path, force: bool = False) -> Iterator[Path]:
                 raise  # the readings may be what failed
             raise _unwritable(path, error) from None
         try:
-            with MOVING:
+            with MOVING, alone(path.parent):
                 staged.chmod(0o666 & ~umask())
                 flush(staged)
                 if force:
                     staged.replace(path)
+                elif instead_of is not None:
+                    place_instead(staged, path, instead_of)
                 else:
                     place_new(staged, path)
                 FINISHED.append(path)

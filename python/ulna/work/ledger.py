@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
+import secrets
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -29,7 +32,7 @@ class Ledger:
         asked = {"format": FORMAT, **job}
         try:
             if (folder / JOB).exists():
-                self._check(json.loads((folder / JOB).read_text(encoding="utf-8")), asked)
+                self._check(asked)
                 return
             folder.mkdir(parents=True, exist_ok=True)
             if any(folder.iterdir()):
@@ -37,11 +40,13 @@ class Ledger:
                     f"{folder}: holds other files, and no {JOB}; expected an empty folder, or one of this job. Name "
                     "another."
                 )
-            self._write(JOB, (json.dumps(asked, indent=1, ensure_ascii=False) + "\n").encode())
+            self._begin((json.dumps(asked, indent=1, ensure_ascii=False) + "\n").encode())
+            self._check(asked)
         except (OSError, ValueError) as error:
             raise UlnaInputError(f"{folder}: cannot be used to keep finished work ({error}). Name another.") from None
 
-    def _check(self, found: Any, asked: Mapping[str, Any]) -> None:
+    def _check(self, asked: Mapping[str, Any]) -> None:
+        found: Any = json.loads((self._folder / JOB).read_text(encoding="utf-8"))
         other = [key for key in asked if not isinstance(found, dict) or found.get(key) != asked[key]]
         if other:
             raise UlnaInputError(
@@ -49,10 +54,24 @@ class Ledger:
                 "not what is asked now. Name another folder, or remove this one."
             )
 
-    def _write(self, name: str, content: bytes) -> None:
-        part = self._folder / f"{name}.part"
-        part.write_bytes(content)
-        part.replace(self._folder / name)
+    def _begin(self, content: bytes) -> None:
+        """What the job is, where nobody has said it meanwhile. Raises OSError."""
+        part = self._part(JOB)
+        try:
+            part.write_bytes(content)
+            os.link(part, self._folder / JOB)
+        except FileExistsError:
+            pass
+        except OSError as error:
+            if error.errno not in (errno.EPERM, errno.ENOTSUP, errno.ENOSYS):
+                raise
+            part.replace(self._folder / JOB)  # a disk without links
+        finally:
+            part.unlink(missing_ok=True)
+
+    def _part(self, name: str) -> Path:
+        """Of nobody else: two runs of one job may keep their work in one folder."""
+        return self._folder / f"{name}-{secrets.token_hex(6)}.part"
 
     def _path(self, piece: int) -> Path:
         return self._folder / f"piece-{piece}.npz"
@@ -60,7 +79,7 @@ class Ledger:
     def keep(self, piece: int, arrays: Mapping[str, NDArray[Any]]) -> None:
         """A finished piece. Raises UlnaInputError where it cannot be written."""
         path = self._path(piece)
-        part = path.with_suffix(".part")
+        part = self._part(path.name)
         try:
             with part.open("wb") as file:
                 np.savez(file, allow_pickle=False, **arrays)
