@@ -11,6 +11,7 @@ from tests.cli_runs import assert_bad_input, run, strict_json
 
 import ulna
 from ulna.calibration.batch import studies_in
+from ulna.formats.claimed import NAME, claimed
 
 
 @pytest.fixture
@@ -184,3 +185,17 @@ def test_json_is_what_is_written(arms: Path, tmp_path: Path) -> None:
     done = run("batch", arms, "-o", tmp_path / "out", "--only", "weld/*", "--json")
     assert done.returncode == 0
     assert strict_json(done.stdout) == json.loads((tmp_path / "out" / "batch.json").read_text("utf-8"))
+
+
+def test_two_batches_take_turns(arms: Path, tmp_path: Path) -> None:
+    """A folder is one batch's until it ends, however it ends."""
+    out = tmp_path / "out"
+    with claimed(out, "batch"):
+        for force in (False, True):
+            with pytest.raises(ulna.UlnaInputError, match=r"out: another batch is writing here\. Wait for it"):
+                ulna.batch(arms, out, force=force)
+    assert not out.exists()
+    out.mkdir()
+    (out / NAME).write_text("")  # of one that was killed
+    assert ulna.batch(arms, out, only="press/*").converged
+    assert sorted(path.name for path in out.iterdir()) == ["batch.json", "press"]

@@ -18,6 +18,7 @@ from typing import Any, Literal
 from ulna.calibration.calibrate import calibrate
 from ulna.calibration.provenance import provenance
 from ulna.calibration.result import FILES, RESIDUALS, Result
+from ulna.formats.claimed import claimed
 from ulna.formats.names import as_text
 from ulna.formats.output import refuse_inputs, write_file
 from ulna.formats.toml import read_json
@@ -128,23 +129,24 @@ def batch(
     only: a shell-style pattern over the studies' names. A study that cannot be calibrated stops no other: its message
     is in the answer. What `out` has already, made by this version from the same files with the same options, is kept
     and not done again; other results there are refused unless `force` is given. Raises UlnaInputError where nothing can
-    be done at all; KeyboardInterrupt.
+    be done at all, or another batch is writing into `out`; KeyboardInterrupt.
     """
     folder, out = Path(folder), Path(out)
     named = studies_in(folder, only)
     listed = out / LIST
-    earlier = _earlier_list(listed, force)
     done: dict[str, Calibrated] = {}
     told = progress if progress is not None else lambda *_: None
     told("studies", 0, len(named))
     names = list(named)
-    for number, answer in (workers or Threads()).each(_calibrate, _Turns(named, out, force)):
-        name = names[number]
-        done[name] = _kept(name, answer, out / name, force)
-        told("studies", len(done), len(named))
-    found = Batch([done[name] for name in named])
-    text = json.dumps(found.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
-    write_file(listed, text + "\n", force, instead_of=earlier)
+    with claimed(out, "batch"):
+        earlier = _earlier_list(listed, force)
+        for number, answer in (workers or Threads()).each(_calibrate, _Turns(named, out, force)):
+            name = names[number]
+            done[name] = _kept(name, answer, out / name, force)
+            told("studies", len(done), len(named))
+        found = Batch([done[name] for name in named])
+        text = json.dumps(found.as_dict(), indent=1, ensure_ascii=False, allow_nan=False)
+        write_file(listed, text + "\n", force, instead_of=earlier)
     return found
 
 

@@ -87,6 +87,9 @@ def leave_interrupted(code: int | None = None) -> NoReturn:
         else:
             with suppress(OSError):
                 staged.unlink()
+    for made in list(output.MADE) if output is not None else ():
+        with suppress(OSError):
+            made.rmdir()  # only where nothing came into it
     sys.stderr.flush()
     os._exit(ended() if code is None else code)
 

@@ -20,6 +20,9 @@ from ulna.ground.errors import UlnaInputError
 #: staging places of this process: whoever must end it at once takes them away first
 UNDER_WAY: set[Path] = set()
 
+#: folders of this process that were made for results under way
+MADE: list[Path] = []
+
 #: no space, too large a file, quota: only writing fails so
 _NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
@@ -87,15 +90,15 @@ def output_folder(
     try:
         try:
             with _PARENTS:
-                made += _missing(place.parent)
+                made += missing(place.parent)
                 place.parent.mkdir(parents=True, exist_ok=True)
                 staging = _staged_folder(place)
         except OSError as error:
-            raise _unwritable(folder, error) from None
+            raise unwritable(folder, error) from None
         try:
             yield staging
         except OSError as error:  # what is done here is writing
-            raise _unwritable(folder, error) from None
+            raise unwritable(folder, error) from None
         absent = [name for name in names if not (staging / name).is_file()]
         if absent:
             raise RuntimeError(f"not written: {', '.join(absent)}")  # a mistake of ours, not of the user
@@ -108,12 +111,12 @@ def output_folder(
         except FileExistsError as error:
             raise _appeared(Path(error.filename or folder)) from None
         except OSError as error:
-            raise _unwritable(folder, error) from None
+            raise unwritable(folder, error) from None
     finally:
         if staging is not None:
             shutil.rmtree(staging, ignore_errors=True)
             UNDER_WAY.discard(staging)
-        _leave(made)
+        leave(made)
 
 
 def _staged_folder(place: Path) -> Path:
@@ -156,17 +159,17 @@ def new_file(path: str | Path, force: bool = False, instead_of: str | None = Non
     try:
         try:
             with _PARENTS:
-                made += _missing(path.parent)
+                made += missing(path.parent)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 staged.touch(mode=0o600, exist_ok=False)
         except OSError as error:
-            raise _unwritable(path, error) from None
+            raise unwritable(path, error) from None
         try:
             yield staged
         except OSError as error:
             if not _no_room(error):
                 raise  # the readings may be what failed
-            raise _unwritable(path, error) from None
+            raise unwritable(path, error) from None
         try:
             with MOVING, alone(path.parent):
                 staged.chmod(0o666 & ~umask())
@@ -181,25 +184,28 @@ def new_file(path: str | Path, force: bool = False, instead_of: str | None = Non
         except FileExistsError:
             raise _appeared(path) from None
         except OSError as error:
-            raise _unwritable(path, error) from None
+            raise unwritable(path, error) from None
     finally:
         with suppress(OSError):
             staged.unlink()
         UNDER_WAY.discard(staged)
-        _leave(made)
+        leave(made)
 
 
-def _missing(folder: Path) -> list[Path]:
-    """What is to be made so that a folder is there, the innermost first."""
-    return [each for each in (folder, *folder.parents) if not each.exists()]
+def missing(folder: Path) -> list[Path]:
+    """What is to be made so that a folder is there, the innermost first; known so that an interrupt leaves none."""
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    MADE.extend(made)
+    return made
 
 
-def _leave(made: list[Path]) -> None:
+def leave(made: list[Path]) -> None:
     """Takes folders away that were made for a result, where none came into them."""
     with _PARENTS:
         for folder in made:
             with suppress(OSError):
                 folder.rmdir()
+            MADE.remove(folder)
 
 
 def _appeared(path: Path) -> UlnaInputError:
@@ -228,7 +234,7 @@ def _no_room(error: OSError) -> bool:
     return _number(error) in _NO_ROOM
 
 
-def _unwritable(path: Path, error: OSError) -> UlnaInputError:
+def unwritable(path: Path, error: OSError) -> UlnaInputError:
     number = _number(error)
     reason = str(error) if number is None else os.strerror(number)
     return UlnaInputError(f"{path}: cannot be written ({reason}). Choose a place with room where you may write.")

@@ -37,7 +37,7 @@ def _first(column: Any) -> Any:
     """Its first value, or that there is none that Python knows."""
     try:
         return column[0].as_py()
-    except (ValueError, OverflowError, pa.ArrowException):
+    except (ValueError, OverflowError, KeyError, pa.ArrowException):  # KeyError: of a time zone that nobody knows
         return "a value beyond its type"
 
 
