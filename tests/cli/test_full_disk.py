@@ -7,6 +7,8 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -133,3 +135,48 @@ def test_a_place_that_is_none_is_told_by_every_command(bench: Path) -> None:
         assert "Traceback" not in said, (name, said)
     assert listing(bench) == before
     assert (bench / "file").read_text() == "mine"
+
+
+#: a disk of its own: its options, what else is done to it, what every command says
+DISKS = {
+    "full": ("size=64k", "fill", "No space left on device"),
+    "no more files": ("nr_inodes=1", "", "No space left on device"),
+    "read-only": ("size=64k", "remount", "Read-only file system"),
+}
+
+
+@pytest.fixture(params=DISKS)
+def disk(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Path, str]]:
+    """A real one, and its reason."""
+    options, then, reason = DISKS[request.param]
+    place = tmp_path / "disk"
+    place.mkdir()
+    if sys.platform != "linux" or _mount("-t", "tmpfs", "-o", options, "tmpfs", str(place)):
+        pytest.skip("a disk may not be mounted here")  # not everywhere that CI runs, so no real part
+    try:
+        if then == "fill":
+            with (place / "others").open("wb", buffering=0) as file, suppress(OSError):
+                while True:
+                    file.write(bytes(4096))
+        if then == "remount":
+            assert not _mount("-o", "remount,ro", str(place))
+        yield place, reason
+    finally:
+        subprocess.run(["umount", str(place)], check=True)
+
+
+def _mount(*words: str) -> int:
+    return subprocess.run(["mount", *words], capture_output=True, check=False).returncode
+
+
+@pytest.mark.skipif(shutil.which("mount") is None, reason="no mount")
+def test_a_real_disk_that_takes_nothing_is_told_by_every_command(bench: Path, disk: tuple[Path, str]) -> None:
+    place, reason = disk
+    before, beside = listing(place), listing(bench)
+    for name, (code, said) in run_all(bench, str(place / "out")).items():
+        assert code == 2, (name, said)
+        assert said.count("error: ") == 1, (name, said)
+        assert f"cannot be written ({reason})" in said, (name, said)
+        assert "Traceback" not in said, (name, said)
+        assert listing(place) == before, name
+    assert listing(bench) == beside
