@@ -137,6 +137,45 @@ def test_a_library_that_waits_for_ever_is_stopped(file: Path, monkeypatch: pytes
     assert len(read_table(header, numeric, Q)) == 5
 
 
+@pytest.fixture
+def groups(tmp_path: Path) -> tuple[Path, bytearray]:
+    """A good file as the oldest libraries write it, whose names are in a tree and a heap; its bytes."""
+    path = tmp_path / "old.h5"
+    with h5py.File(path, "w", libver=("earliest", "v108")) as made:
+        for name in Q:
+            made[name] = np.linspace(-1, 1, 5)
+    assert told(path) == ""
+    return path, bytearray(path.read_bytes())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals")
+def test_a_library_that_crashes_is_told(groups: tuple[Path, bytearray], file: Path) -> None:
+    """The real one: a node of the tree of names (version 1: level at byte 5, first child at 32) is its own child."""
+    path, content = groups
+    node = content.index(b"TREE")
+    content[node + 5] = 1
+    content[node + 32 : node + 40] = node.to_bytes(8, "little")
+    path.write_bytes(content)
+    assert f"{path}: damaged: its reader was ended by SIGSEGV" in told(path)
+    assert told(file) == "", "the next file is read"
+
+
+def test_a_library_that_goes_in_circles_is_stopped(
+    groups: tuple[Path, bytearray], file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The real one: the first free block of the heap of names (its offset at byte 16, its data at 24) is followed by
+    itself."""
+    path, content = groups
+    heap = content.index(b"HEAP")
+    free, data = (int.from_bytes(content[heap + k : heap + k + 8], "little") for k in (16, 24))
+    content[data + free : data + free + 8] = free.to_bytes(8, "little")
+    path.write_bytes(content)
+    monkeypatch.setattr(asking, "QUIET_S", 2)
+    assert f"{path}: damaged: its reader gave no sign for 2 s and was stopped" in told(path)
+    monkeypatch.undo()
+    assert told(file) == "", "the next file is read"
+
+
 def test_sizes_that_no_file_has_are_refused(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with h5py.File(file, "a") as made:
         made.create_dataset("n", data=np.zeros(17 << 20, "i1"), chunks=(1 << 20,), compression="gzip")
