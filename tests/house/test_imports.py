@@ -34,6 +34,7 @@ FLOORS = {
     "uncertainties": 8,
     "checking": 8,
     "documents": 9,
+    "live": 10,
     "records": 10,
     "cli": 11,
     "__main__": 12,

@@ -1,0 +1,47 @@
+"""What can be wrong with a stream, each told once, in words, with the time at which it was seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+GARBAGE = "garbage"
+GAP = "gap"
+REPEAT = "repeat"
+CLOCK_JUMP = "clock_jump"
+WRAP = "wrap"
+RESET = "reset"
+SWAP = "swap"
+JUMP = "jump"
+TOO_LONG = "too_long"
+ENDED = "ended"
+KINDS = {
+    GARBAGE: "bytes that are no reading, skipped",
+    GAP: "no reading for longer than there should be",
+    REPEAT: "the same reading sent again",
+    CLOCK_JUMP: "the device's clock went back, or ahead of time",
+    WRAP: "an encoder, or the device's clock, began again after its last count; turns go on",
+    RESET: "the device counts from zero again",
+    SWAP: "two fields changed places",
+    JUMP: "a joint moved faster than an arm does",
+    TOO_LONG: "a line of more than 4 kB, or more than 32 channels: the source ends",
+    ENDED: "the source ended",
+}
+"""Kind → what it is."""
+DOUBTFUL = frozenset({RESET, SWAP, JUMP})
+"""After these nothing says that the angles are still right: a stream is doubtful until somebody says so."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that was wrong."""
+
+    kind: str
+    """One of `KINDS`."""
+    t_host_s: float
+    """When it was seen, time.monotonic()."""
+    text: str
+    """One sentence."""
+
+    def as_dict(self) -> dict[str, object]:
+        """As JSON has it."""
+        return {"kind": self.kind, "t_host_s": self.t_host_s, "text": self.text}

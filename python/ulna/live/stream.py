@@ -1,0 +1,62 @@
+"""A source, mapped and looked at: what commands read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from ulna.ground.arrays import F64
+from ulna.live.faults import Fault
+from ulna.live.mapping import Mapping
+from ulna.live.plausible import Plausible
+from ulna.live.registry import open_source
+from ulna.live.samples import Samples
+from ulna.live.source import Source
+from ulna.live.source_file import StatedSource, read_source
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What came at once."""
+
+    samples: Samples
+    q_rad: F64
+    """(N, n) encoder angles, turns counted."""
+    faults: list[Fault]
+
+
+class Stream:
+    """A source with its mapping and what watches over it."""
+
+    def __init__(self, source: Source, stated: StatedSource, angles: bool = True) -> None:
+        """angles: whether they are needed, or what was sent is enough where nobody says its unit. Raises UlnaInputError
+        where the channels are not those of the mapping."""
+        self.source = source
+        self.stated = stated
+        self.mapping = Mapping(stated.file.map, source.hello, stated.path, angles)
+        self.plausible = Plausible(self.mapping, stated.file.limits, source.hello.rate_hz)
+
+    def read(self, timeout_s: float) -> Frames:
+        """As `Source.read`. Raises SourceEnded; what was wrong at the end is in `source.faults()`."""
+        samples = self.source.read(timeout_s)
+        found, resets = self.plausible.look(samples)
+        q_rad = self.mapping.q_rad(samples, resets)
+        return Frames(samples, q_rad, [*self.source.faults(), *found, *self.mapping.faults()])
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether a reset, a swap or a jump came and nobody has said since that the angles are right."""
+        return self.plausible.doubtful
+
+
+@contextmanager
+def streaming(source: str | Path, angles: bool = True) -> Iterator[Stream]:
+    """A stream by the url of its source, its file, or a recording by its path. Raises UlnaInputError."""
+    stated = read_source(source)
+    found = open_source(stated)
+    try:
+        yield Stream(found, stated, angles)
+    finally:
+        found.close()
