@@ -25,6 +25,7 @@ from ulna.calibration.result_file import CrossValidationFile, EvaluationFile, Re
 from ulna.checking.result_file import CheckFile
 from ulna.checking.tables import ProtocolFile
 from ulna.documents.laboratory.tables import LaboratoryFile
+from ulna.live.tables import SourceFile
 from ulna.planning.file import PlanFile
 from ulna.planning.result_file import PlanResultFile
 from ulna.simulation.tables import SimulationFile
@@ -51,6 +52,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-verification-1": VerificationFile,
     "ulna-protocol-1": ProtocolFile,
     "ulna-check-1": CheckFile,
+    "ulna-source-1": SourceFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

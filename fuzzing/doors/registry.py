@@ -5,6 +5,7 @@ from __future__ import annotations
 from fuzzing.door import Door
 from fuzzing.doors.csv_files import csv_bytes
 from fuzzing.doors.hdf5_files import hdf5_bytes
+from fuzzing.doors.journals import JournalDoor
 from fuzzing.doors.json_files import JsonDoor
 from fuzzing.doors.mat_files import mat_bytes
 from fuzzing.doors.new import new_trial
@@ -56,6 +57,13 @@ _STUDY = (
     "identify {file} --json",
     "evaluate arm.toml {file}",
     "measure arm.toml task.csv --like {file}",
+)
+
+_WATCHED = ("live watch {file} --seconds 2", "live watch {file} --seconds 2 --json")
+_REPLAYED = (
+    "live replay {file} --speed max",
+    "live replay {file} --speed max --json",
+    "live replay {file} -o again.csv",
 )
 
 DOORS: dict[str, Door] = {
@@ -377,6 +385,8 @@ DOORS: dict[str, Door] = {
                 ",;\n",
             ),
         ),
+        Door("source", TomlDoor(["fossils/source-1.toml"], _WATCHED), short=25),
+        Door("journal", JournalDoor(["fossils/journal-1.journal"], _REPLAYED), short=25),
         Door("new", new_trial),
         Door("options", option_trial),
     ]

@@ -101,6 +101,9 @@ def test_what_needs_more_says_which_extra(result: Path, tmp_path: Path) -> None:
         ("tables", ["measure", tmp_path / "arm.toml", EXAMPLES / "bars.csv", "-o", tmp_path / "out.parquet"]),
         ("records", ["record", "init", out]),
         ("records", ["calibrate", EXAMPLES / "study.toml", "-o", out, "--record", "P7"]),
+        ("mqtt", ["live", "watch", "mqtt://host/topic"]),
+        ("ros", ["live", "watch", "bag:run.mcap"]),
+        ("opcua", ["live", "watch", "opc.tcp://host:4840"]),
         ("dask", ["batch", EXAMPLES, "--dask", "tcp://127.0.0.1:1", "-o", out]),
     ):
         done = bare(*arguments)

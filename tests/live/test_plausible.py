@@ -121,6 +121,17 @@ def test_samples_that_come_late_together_are_no_gap_of_the_device_but_of_the_str
     assert looked(host, device, raw, 1)[0] == []
 
 
+@pytest.mark.parametrize("clock", [True, False])
+def test_readings_lost_while_a_joint_turns_fast_are_no_jump(clock: bool) -> None:
+    """Three of 100 a second lost, too few for a gap, of a joint at 8 rad/s: it moved by 18°."""
+    host, device, raw = turning()
+    raw[:, 1] = np.round(8.0 * np.arange(400) / RATE_HZ * 4096 / (2 * math.pi)) % 4096
+    keep = np.r_[0:200, 203:400]
+    kinds, _, doubtful = looked(host[keep], device[keep] if clock else None, raw[keep])
+    assert set(kinds) == {WRAP}
+    assert not doubtful
+
+
 @pytest.mark.parametrize(("by", "word"), [(-3.0, "back"), (3600.0, "ahead")])
 def test_a_clock_jump_is_named_once(by: float, word: str) -> None:
     host, device, raw = turning()

@@ -39,6 +39,7 @@ COMMANDS = {
 GROUPS = {
     "import": "ulna.cli.importing",
     "export": "ulna.cli.exporting",
+    "live": "ulna.cli.live.app",
     "record": "ulna.cli.recording.app",
 }
 

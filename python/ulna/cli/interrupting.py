@@ -46,6 +46,24 @@ def prompt_interrupts() -> Iterator[None]:
         os.close(tell)  # the watching thread reads the end and returns
 
 
+@contextmanager
+def asked_to_end() -> Iterator[threading.Event]:
+    """While this lasts, SIGINT and SIGTERM end nothing: they set the event, and what goes on until somebody ends it
+    ends itself, with all that it has."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked
+        return
+    heard_by = signal.set_wakeup_fd(-1)
+    before = {number: signal.signal(number, lambda _number, _frame: asked.set()) for number in ENDING}
+    try:
+        yield asked
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        signal.set_wakeup_fd(heard_by, warn_on_full_buffer=False)
+
+
 def _watch(hear: int, answered: threading.Event) -> None:
     while heard := os.read(hear, 1):
         if heard[0] in ENDING and not answered.wait(_GRACE_S):

@@ -17,10 +17,13 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "judge": ("sklearn",),
     "dask": ("distributed",),
     "records": ("sqlalchemy", "alembic", "pg8000"),
+    "mqtt": ("paho",),
+    "ros": ("mcap", "mcap_ros2", "rosbags"),
+    "opcua": ("asyncua",),
 }
 """Extra, as in pyproject.toml → what is imported of it."""
 
-PACKAGES = {"sklearn": "scikit-learn"}
+PACKAGES = {"sklearn": "scikit-learn", "paho": "paho-mqtt", "mcap_ros2": "mcap-ros2-support"}
 """What is imported → the package that it is in, where that has another name."""
 
 

@@ -129,7 +129,7 @@ class Plausible:
         self._repeating = False
         if dt > self._gap_limit():
             faults.append(Fault(GAP, t, f"a gap of {_milliseconds(dt)} in the stream."))
-        moved = np.abs(steps) > self._limit(dt if dt > self._gap_limit() or self.period_s is None else 0.0)
+        moved = np.abs(steps) > self._limit(dt)
         if self._reset(before.raw, row.raw):
             # its clock began again with it: one thing happened
             faults = [fault for fault in faults if fault.kind not in (CLOCK_JUMP, WRAP)]

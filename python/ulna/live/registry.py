@@ -42,6 +42,18 @@ KINDS: dict[str, Kind] = {
     "push": Kind(
         "ulna.live.sources.push", "push://127.0.0.1:8765/?token=…", "whoever sends readings here, by WebSocket"
     ),
+    "mqtt": Kind("ulna.live.sources.mqtt", "mqtt://host/topic", "messages of a broker's topic", ("paho",)),
+    "mqtts": Kind("ulna.live.sources.mqtt", "mqtts://host/topic", "the same, encrypted", ("paho",)),
+    "opc.tcp": Kind(
+        "ulna.live.sources.opcua", "opc.tcp://host:4840/", "axes of an OPC UA server", ("asyncua",), bytes=False
+    ),
+    "bag": Kind(
+        "ulna.live.sources.bag",
+        "bag:run.mcap?topic=/joint_states",
+        "a recording of ROS: MCAP, rosbag2, rosbag1",
+        ("mcap", "mcap_ros2", "rosbags"),
+        bytes=False,
+    ),
     "file": Kind("ulna.live.sources.file", "file:run.journal?speed=10", "a recording, or a CSV file", bytes=False),
 }
 """Scheme → kind."""

@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Protocol
 
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
@@ -23,6 +24,16 @@ HOST, DEVICE, BUTTON = "t_host_s", "t_device_s", "button"
 """Columns of a CSV file that are no channels."""
 AT_ONCE = 4096
 """Samples that a read gives at most."""
+
+
+class Blocks(Protocol):
+    """The samples of a recording, block by block."""
+
+    hello: Hello
+    faults: list[Fault]
+
+    def __iter__(self) -> Iterator[Samples]:
+        """From the first. Raises SourceEnded where it cannot go on."""
 
 
 class JournalBlocks:
@@ -51,6 +62,8 @@ class CsvBlocks:
         cells = [
             cell.strip() for cell in (first.split(table.separator) if table.separator else ANY.split(first.strip()))
         ]
+        if table.prefix is not None and cells[0] == table.prefix:
+            del cells[0]
         self._skip = not all(_is_number(cell) for cell in cells)
         names = tuple(table.names) if table.names else tuple(cells) if self._skip else None
         if self._skip and names is not None and len(set(names)) < len(names) and not table.names:
@@ -105,7 +118,7 @@ class CsvBlocks:
 class FileSource:
     """A recording. Its times are those that it was recorded with, whatever the speed."""
 
-    def __init__(self, blocks: JournalBlocks | CsvBlocks, speed: float | None) -> None:
+    def __init__(self, blocks: Blocks, speed: float | None) -> None:
         """speed: 1 is as it came; None as fast as can be."""
         self.hello = blocks.hello
         self._blocks = blocks

@@ -72,7 +72,8 @@ class WireSource:
             why = str(ended)
         except Exception as error:  # whatever a driver raises of a cable that is gone
             why = f"{self._wire.device}: gone ({_reason(error)})."
-        self._why = why
+        if self._why is None:
+            self._why = why
         self._came.set()
 
     def _channels(self, wait_s: float) -> tuple[str, ...]:

@@ -1,0 +1,1 @@
+"""`ulna live`: its commands."""

@@ -1,0 +1,58 @@
+"""What is known of a stream while it is read."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import Any
+
+from ulna.live.faults import Fault
+from ulna.live.stream import Frames, Stream
+
+_FAULTS = 5
+
+
+class Round:
+    """What is known of a stream while it is read."""
+
+    def __init__(self, stream: Stream) -> None:
+        self.stream = stream
+        self.count = 0
+        self.counted: dict[str, int] = {}
+        """Faults by kind."""
+        self.last: deque[Fault] = deque(maxlen=_FAULTS)
+        self.newest: Frames | None = None
+        self.why: str | None = None
+        """Why it ended."""
+        self._arrivals: deque[tuple[float, int]] = deque(maxlen=4096)
+
+    def take(self, frames: Frames) -> None:
+        self.count += len(frames.samples)
+        if len(frames.samples):
+            self.newest = frames
+            self._arrivals.append((time.monotonic(), self.count))
+        self.fault(frames.faults)
+
+    def fault(self, faults: list[Fault]) -> None:
+        for each in faults:
+            self.counted[each.kind] = self.counted.get(each.kind, 0) + 1
+            self.last.append(each)
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second over the last two."""
+        now = time.monotonic()
+        while len(self._arrivals) > 2 and now - self._arrivals[0][0] > 2.0:
+            self._arrivals.popleft()
+        if len(self._arrivals) < 2:
+            return 0.0
+        (begin, few), (_, many) = self._arrivals[0], self._arrivals[-1]
+        return (many - few) / max(now - begin, 1e-9)
+
+    @property
+    def age_s(self) -> float | None:
+        """How old the newest sample is."""
+        return None if self.newest is None else time.monotonic() - float(self.newest.samples.t_host_s[-1])
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"samples": self.count, "faults": self.counted, "doubtful": self.stream.doubtful, "ended": self.why}
