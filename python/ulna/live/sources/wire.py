@@ -45,7 +45,7 @@ class WireSource:
         self._wire, self._decoder = wire, decoder
         self._pieces: deque[tuple[float, bytes]] = deque()
         self._came = threading.Event()
-        self._waiting = 0
+        self._heard = self._taken = 0  # bytes; each is written by one thread
         self._why: str | None = None
         self._closed = self._end_said = False
         self._rows: list[Row] = []
@@ -64,9 +64,9 @@ class WireSource:
             while not self._closed:
                 for piece in self._wire.receive():
                     self._pieces.append((time.monotonic(), piece))
-                    self._waiting += len(piece)
+                    self._heard += len(piece)
                     self._came.set()
-                if self._waiting > MOST_WAITING:
+                if self._heard - self._taken > MOST_WAITING:
                     raise SourceEnded(f"{self._wire.device}: more than {MOST_WAITING >> 20} MB wait to be read.")
         except SourceEnded as ended:
             why = str(ended)
@@ -106,7 +106,7 @@ class WireSource:
         self._came.clear()
         while self._pieces:
             t_host_s, piece = self._pieces.popleft()
-            self._waiting -= len(piece)
+            self._taken += len(piece)
             try:
                 self._rows += self._decoder.feed(piece, t_host_s, self._wire.messages)
             except TooLong as error:
