@@ -367,3 +367,37 @@ def choose(
 ) -> tuple[list[int], list[float], int]:
     """`count` of the candidates with a small criterion of C = M⁻¹, by exchange from a random set: their numbers, the
     criterion after each round, and how many exchanges there were. Raises UlnaError where too few are to be chosen."""
+
+class Running:
+    """What is known while readings still come: rows that are added and taken away, none started over."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        hold: Bool,  # (P,)
+        parameters: F64 | None = None,  # (P,) from where the readings are looked at; None: the problem's own
+        sigma: float | None = None,  # of a whitened residual, as a fit of this problem showed it; None: before a fit
+    ) -> None:
+        """Leaf k holds the readings of the standing that `rows_of_fit` numbers k."""
+    @property
+    def leaves(self) -> int:
+        """How many there are, with the empty ones."""
+    def put(self, leaf: int, group: int, readings: Problem) -> bool:
+        """Readings of a group's artefact that stand in one place, as the only group of a problem, in place of what the
+        leaf held. False: their dimensions are not the group's, so that they can only be looked at with all others."""
+    def empty(self, leaf: int) -> None: ...
+    def so_far(self) -> tuple[int, Bool, F64, F64]:
+        """The rank; (F,) which free parameters take part in what is not determined; (F, F) covariance along what is;
+        (F,) a step from `parameters` to the minimum, exact where the readings are linear."""
+    def with_drawing(
+        self, known_length_mm: float, known_angle_rad: float, without: int | None = None
+    ) -> tuple[F64, F64]:
+        """(F, F) covariance with what a drawing says of every free parameter without a prior, and (F, F) upper R of
+        what is known, whitened: of these `gains` are asked. without: a leaf that is left out."""
+
+def gains(
+    candidates: F64,  # (N, k, F) whitened rows of each
+    triangle: F64,  # (F, F) upper R of what is known
+    directions: F64,  # (m, F) rows of what is asked for
+) -> F64:
+    """(N,) by how much each candidate lowers the mean variance of what is asked for. Raises UlnaError."""

@@ -13,7 +13,7 @@ use ulna::fit::monte_carlo::{self, Repeat};
 use ulna::identify::identifiability::Known;
 
 /// Indices of the parameters that are not held.
-fn free(problem: &Problem, hold: &PyReadonlyArray1<'_, bool>) -> PyResult<Vec<usize>> {
+pub(crate) fn free(problem: &Problem, hold: &PyReadonlyArray1<'_, bool>) -> PyResult<Vec<usize>> {
     let hold = slice(hold);
     let expected = problem.inner.parameter_count();
     if hold.len() != expected {

@@ -8,6 +8,7 @@ mod errors;
 mod fit;
 mod fitted;
 mod problem;
+mod running;
 mod watch;
 
 use pyo3::prelude::*;
@@ -26,9 +27,11 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<problem::Problem>()?;
     module.add_class::<fitted::Fitted>()?;
     module.add_class::<fitted::Identifiability>()?;
+    module.add_class::<running::Running>()?;
     module.add_function(wrap_pyfunction!(simd_level, module)?)?;
     module.add_function(wrap_pyfunction!(problem::kinds, module)?)?;
     module.add_function(wrap_pyfunction!(design::choose, module)?)?;
+    module.add_function(wrap_pyfunction!(running::gains, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::identify, module)?)?;
     module.add_function(wrap_pyfunction!(fit::costs, module)?)?;

@@ -1,2 +1,1 @@
-"""Live readings: from a stream of angles, by whatever way it comes, to samples that are decoded, mapped and looked
-at."""
+"""Live readings: a stream of angles by whatever way it comes, touches made of it, and what is known after each."""

@@ -10,7 +10,9 @@
 mod blocks;
 mod criterion;
 mod exchange;
+mod gains;
 
 pub use blocks::Candidates;
 pub use criterion::Criterion;
 pub use exchange::{Chosen, Task, choose};
+pub use gains::gains;

@@ -3,6 +3,7 @@
 pub mod calibrate;
 pub mod monte_carlo;
 pub mod robust;
+pub mod running;
 pub mod solve;
 pub mod symmetry;
 

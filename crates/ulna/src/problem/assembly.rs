@@ -3,7 +3,7 @@
 use super::groups::Problem;
 use super::pins::Pin;
 use super::priors::Prior;
-use crate::artefacts::{At, Buffers, Model, Unknowns, Writer};
+use crate::artefacts::{At, Buffers, Model, Readings, Unknowns, Writer};
 use crate::error::Result;
 use crate::monitor::Monitor;
 use crate::solver::{BLOCK_ROWS, LeastSquares, RowBlock, RowSink};
@@ -98,16 +98,56 @@ impl<'a> Assembly<'a> {
         self.stream(x, Wanted { jacobian: true, considered: false, standings: true }, sink)
     }
 
+    /// The same, with the considered dimensions as further unknowns.
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    pub fn considered_rows_of_standings(&mut self, x: &[f64], sink: &mut dyn RowSink) -> Result<()> {
+        self.stream(x, Wanted { jacobian: true, considered: true, standings: true }, sink)
+    }
+
+    /// The equations of other readings of the artefact of a group, which are in no group, weighed already; the considered
+    /// dimensions as further unknowns.
+    ///
+    /// # Errors
+    /// [`crate::Error::Interrupted`].
+    pub fn rows_beside(
+        &mut self,
+        x: &[f64],
+        group: usize,
+        readings: &dyn Readings,
+        sink: &mut dyn RowSink,
+    ) -> Result<()> {
+        self.place(x);
+        let own = self.problem.dimensions_at(&self.parameters).swap_remove(group);
+        let columns = self.problem.arm().parameter_count() + own.len() + 1 + 6;
+        let mut out = Writer::new(&mut self.buffers, columns, &self.model, sink, self.monitor);
+        out.ask_standings();
+        let at = At { model: &self.model, dimensions: &own };
+        let streamed = readings.stream(at, &self.unknowns[group], true, &mut out);
+        let finished = out.finish(&mut self.buffers);
+        streamed.and(finished)
+    }
+
+    /// The equations of what is known beforehand, for a sink of the free unknowns and the considered ones.
+    pub fn prior_rows(&self, x: &[f64], sink: &mut dyn RowSink) {
+        self.stream_priors(x, true, x.len() + self.considered, sink);
+    }
+
     /// Number of considered dimensions: known with an uncertainty, and not fitted.
     pub fn considered(&self) -> usize {
         self.considered
     }
 
-    fn stream(&mut self, x: &[f64], wanted: Wanted, sink: &mut dyn RowSink) -> Result<()> {
+    fn place(&mut self, x: &[f64]) {
         for (&j, &value) in self.free.iter().zip(x) {
             self.parameters[j] = value;
         }
         self.model.set_parameters(&self.parameters[..self.problem.arm().parameter_count()]);
+    }
+
+    fn stream(&mut self, x: &[f64], wanted: Wanted, sink: &mut dyn RowSink) -> Result<()> {
+        self.place(x);
         let dimensions = self.problem.dimensions_at(&self.parameters);
         // parameters of the arm, dimensions of a group, residual, standing
         let most_dimensions = dimensions.iter().map(Vec::len).max().unwrap_or(0);

@@ -265,6 +265,14 @@ impl Problem {
         }
     }
 
+    /// Weighs other readings of the artefact of a group, as its own would be.
+    pub(super) fn weigh_beside(&self, parameters: &[f64], group: usize, readings: &mut dyn Readings) {
+        let mut model = Model::new(&self.arm);
+        model.set_parameters(&parameters[..self.arm.parameter_count()]);
+        let dimensions = self.dimensions_at(parameters).swap_remove(group);
+        readings.weigh(At { model: &model, dimensions: &dimensions }, self.noise.as_ref(), Weighing::Full);
+    }
+
     /// Residuals of every group as a loss judges them.
     pub fn whitened(&self, parameters: &[f64]) -> Vec<Whitened> {
         let mut groups = Vec::new();

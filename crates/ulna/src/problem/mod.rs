@@ -10,4 +10,4 @@ mod parameters;
 mod rows;
 
 pub use groups::Problem;
-pub use rows::{WhitenedRows, rows_at, whitened_rows};
+pub use rows::{WhitenedRows, considered_rows_at, rows_at, rows_beside, whitened_rows};

@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::groups::Problem;
-use crate::artefacts::Weighing;
+use crate::artefacts::{Readings, Weighing};
 use crate::error::{Error, Result};
 use crate::monitor::Monitor;
 use crate::solver::{RowBlock, RowSink};
@@ -44,7 +44,67 @@ pub fn rows_at(problem: &Problem, free: &[usize], parameters: &[f64], monitor: &
     Ok(sink.kept.sorted(free.len()))
 }
 
+/// The same with the considered dimensions as further unknowns behind the free ones: so many are told.
+///
+/// # Errors
+/// Interrupted.
+pub fn considered_rows_at(
+    problem: &Problem,
+    free: &[usize],
+    parameters: &[f64],
+    monitor: &dyn Monitor,
+) -> Result<(WhitenedRows, usize)> {
+    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, free, &[], monitor);
+    let considered = assembly.considered();
+    let mut sink = Kept { unknowns: free.len() + considered, kept: WhitenedRows::default() };
+    assembly.considered_rows_of_standings(&x, &mut sink)?;
+    Ok((sink.kept.sorted(free.len() + considered), considered))
+}
+
+/// The same of other readings of the artefact of a group, weighed as the problem's are at these parameters; none where they
+/// have other dimensions than the group's: a feature that is touched once has an error of its own instead of one.
+///
+/// # Errors
+/// No such group, or interrupted.
+pub fn rows_beside(
+    problem: &Problem,
+    (free, parameters): (&[usize], &[f64]),
+    group: usize,
+    readings: &dyn Readings,
+    monitor: &dyn Monitor,
+) -> Result<Option<WhitenedRows>> {
+    let count = problem.groups().len();
+    let Some(like) = problem.groups().get(group) else {
+        return Err(Error::NoSuch { what: "group", index: group as i64, count });
+    };
+    if !readings.dimensions().iter().map(|d| &d.name).eq(like.dimensions().iter().map(|d| &d.name)) {
+        return Ok(None);
+    }
+    let mut readings = readings.boxed();
+    problem.weigh_beside(parameters, group, readings.as_mut());
+    let x: Vec<f64> = free.iter().map(|&j| parameters[j]).collect();
+    let mut assembly = Assembly::new(problem, free, &[], monitor);
+    let unknowns = free.len() + assembly.considered();
+    let mut sink = Kept { unknowns, kept: WhitenedRows::default() };
+    assembly.rows_beside(&x, group, readings.as_ref(), &mut sink)?;
+    Ok(Some(sink.kept.sorted(unknowns)))
+}
+
 impl WhitenedRows {
+    /// The rows and residuals of each standing in turn, for so many unknowns: which one, and rows with their residual.
+    pub fn by_standing(&self, unknowns: usize) -> Vec<(u32, Vec<Vec<f64>>)> {
+        let mut found: Vec<(u32, Vec<Vec<f64>>)> = Vec::new();
+        for (k, row) in self.rows.chunks_exact(unknowns).enumerate() {
+            let whole = [row, &self.residuals[k..=k]].concat();
+            match found.last_mut() {
+                Some((standing, rows)) if *standing == self.standing[k] => rows.push(whole),
+                _ => found.push((self.standing[k], vec![whole])),
+            }
+        }
+        found
+    }
+
     /// Standing by standing: rows of several probes or ways of telling come one after the other.
     fn sorted(self, unknowns: usize) -> WhitenedRows {
         if self.standing.is_sorted() {

@@ -12,6 +12,7 @@ pub mod lm;
 pub mod losses;
 pub mod numdiff;
 pub mod reflect;
+pub mod tree;
 pub mod triangle;
 
 mod equations;

@@ -16,6 +16,9 @@ pub fn fold_into(top: &mut [f64], pivots: usize, columns: &mut Columns, order: &
     Arch::new().dispatch(ReflectOp { top, pivots, columns, order, rows });
 }
 
+/// A sum of squares of less is nothing: its entries are a hundred decades below any that matter.
+const NOTHING: f64 = 1e-280;
+
 /// Columns reflected together, so that the pivot's column is read once for all of them.
 const TOGETHER: usize = 4;
 
@@ -44,7 +47,8 @@ impl WithSimd for ReflectOp<'_> {
                 below = v.mul_add(v, below);
             }
             let below = below.sum();
-            if below == 0.0 {
+            // what rounding leaves of a few rows shrinks from pivot to pivot, until its square has no reciprocal
+            if below < NOTHING {
                 continue;
             }
             let alpha = top[k * width + k];

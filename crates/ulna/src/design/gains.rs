@@ -1,0 +1,199 @@
+//! What one more measurement would be worth, of very many at once.
+
+use super::blocks::{Candidates, cholesky, solve_lower};
+use crate::error::{Error, Result};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use rayon::prelude::*;
+
+/// Blocks worked on together: their rows and products stay in the cache.
+const TOGETHER: usize = 256;
+
+/// By how much each candidate would lower the mean variance of what is asked for, given what is known: with `RᵀR` the
+/// information at hand, `F` the directions asked for (rows of as many numbers as there are unknowns) and a candidate's rows `Z`,
+///
+/// `tr((I + W Wᵀ)⁻¹ W HᵀH Wᵀ) / rows of F`, where `W = Z R⁻¹` and `H = F R⁻¹`.
+///
+/// Only the triangle is ever solved with, the information is never formed. `triangle` is row-major and upper.
+///
+/// # Errors
+/// Shapes that do not agree, numbers that are not finite, a triangle that has a zero on its diagonal.
+pub fn gains(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Result<Vec<f64>> {
+    let (n, each) = (candidates.unknowns, candidates.each);
+    check(candidates, triangle, directions)?;
+    let inverse = inverse_upper(triangle, n);
+    let asked = directions.len() / n;
+    let of_asked = product(MatRef::from_row_major_slice(directions, asked, n), inverse.as_ref());
+    // HᵀH, symmetric and small
+    let weight = product(of_asked.transpose(), of_asked.as_ref());
+    let size = each * n;
+    let mut gains = vec![0.0; candidates.count()];
+    let together = candidates.rows.par_chunks(TOGETHER * size).zip(gains.par_chunks_mut(TOGETHER));
+    together.for_each(|(rows, gains)| {
+        // a row of a candidate is a column here, so that its numbers stand together
+        let count = rows.len() / n;
+        let seen = product(inverse.transpose(), MatRef::from_column_major_slice(rows, n, count));
+        let told = product(weight.as_ref(), seen.as_ref());
+        let mut work = vec![0.0; 2 * each * each];
+        let (inner, outer) = work.split_at_mut(each * each);
+        let mut here = Here { seen: &seen, told: &told, inner, outer };
+        gains.iter_mut().enumerate().for_each(|(k, gain)| *gain = here.gain(k * each, each) / asked as f64);
+    });
+    Ok(gains)
+}
+
+/// The products of some candidates.
+struct Here<'a> {
+    /// `Wᵀ`
+    seen: &'a Mat<f64>,
+    /// `HᵀH Wᵀ`
+    told: &'a Mat<f64>,
+    inner: &'a mut [f64],
+    outer: &'a mut [f64],
+}
+
+impl Here<'_> {
+    /// `tr((I + W Wᵀ)⁻¹ W HᵀH Wᵀ)` of the candidate whose rows begin at `first`.
+    fn gain(&mut self, first: usize, each: usize) -> f64 {
+        for i in 0..each {
+            let (seen, told) = (self.seen.col_as_slice(first + i), self.told.col_as_slice(first + i));
+            for j in 0..=i {
+                let other = self.seen.col_as_slice(first + j);
+                let inner = dot(seen, other) + if i == j { 1.0 } else { 0.0 };
+                let outer = dot(told, other);
+                (self.inner[i * each + j], self.inner[j * each + i]) = (inner, inner);
+                (self.outer[i * each + j], self.outer[j * each + i]) = (outer, outer);
+            }
+        }
+        if each == 1 {
+            return self.outer[0] / self.inner[0];
+        }
+        // I + W Wᵀ is positive definite whatever W is
+        let Some(l) = cholesky(self.inner, each) else { return 0.0 };
+        solve_lower(&l, each, self.outer, each);
+        let mut turned: Vec<f64> = (0..each * each).map(|k| self.outer[k % each * each + k / each]).collect();
+        solve_lower(&l, each, &mut turned, each);
+        (0..each).map(|k| turned[k * each + k]).sum()
+    }
+}
+
+/// Four sums at a time.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = fours.remainder().iter().zip(others.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in fours.zip(others) {
+        (0..4).for_each(|i| sums[i] += x[i] * y[i]);
+    }
+    rest + sums.iter().sum::<f64>()
+}
+
+fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut out = Mat::zeros(a.nrows(), b.ncols());
+    matmul(out.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    out
+}
+
+/// The inverse of an upper triangle, by back substitution column by column: whatever its columns' units are.
+fn inverse_upper(triangle: &[f64], n: usize) -> Mat<f64> {
+    let mut inverse = Mat::zeros(n, n);
+    for column in 0..n {
+        inverse[(column, column)] = 1.0 / triangle[column * n + column];
+        for i in (0..column).rev() {
+            let sum: f64 = (i + 1..=column).map(|k| triangle[i * n + k] * inverse[(k, column)]).sum();
+            inverse[(i, column)] = -sum / triangle[i * n + i];
+        }
+    }
+    inverse
+}
+
+fn check(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Result<()> {
+    let n = candidates.unknowns;
+    let shapes = [
+        ("the candidates' rows", candidates.rows.len(), candidates.count() * candidates.each * n),
+        ("the triangle of the information at hand", triangle.len(), n * n),
+        ("the directions asked for", directions.len(), (directions.len() / n.max(1)).max(1) * n),
+    ];
+    if let Some(&(what, got, expected)) = shapes.iter().find(|(_, got, expected)| got != expected) {
+        return Err(Error::Shape { what: what.into(), got, expected });
+    }
+    let numbers = candidates.rows.iter().chain(triangle).chain(directions);
+    if let Some(&value) = numbers.clone().find(|value| !value.is_finite()) {
+        return Err(Error::NotFinite { what: "a number of the candidates or of what is known".into(), value });
+    }
+    if (0..n).any(|k| triangle[k * n + k] == 0.0) {
+        return Err(Error::OutOfRange {
+            what: "a diagonal entry of the triangle of the information at hand".into(),
+            value: 0.0,
+            expected: "another number than zero (something known beforehand of every unknown)",
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::blocks::inverse;
+
+    fn some(count: usize, seed: f64) -> Vec<f64> {
+        (0..count).map(|k| ((k * k) as f64 * 0.618 + seed).sin() + 0.3 * (k as f64 * seed * 0.77).cos()).collect()
+    }
+
+    fn information(rows: &[f64], n: usize) -> Vec<f64> {
+        let mut m = vec![0.0; n * n];
+        for row in rows.chunks_exact(n) {
+            (0..n * n).for_each(|k| m[k] += row[k / n] * row[k % n]);
+        }
+        m
+    }
+
+    /// The plain version: the mean variance before and after, from inverses of whole information matrices.
+    #[test]
+    fn a_gain_is_what_the_mean_variance_loses() {
+        let n = 6;
+        let triangle: Vec<f64> = some(n * n, 0.4)
+            .iter()
+            .enumerate()
+            .map(|(k, &v)| {
+                if k / n > k % n {
+                    0.0
+                } else if k / n == k % n {
+                    1.0 + v.abs()
+                } else {
+                    v
+                }
+            })
+            .collect();
+        let directions = some(7 * n, 2.1);
+        let at_hand = information(&triangle, n);
+        let mean = |m: &[f64]| {
+            let c = inverse(m, n).unwrap();
+            let variance = |f: &[f64]| -> f64 { (0..n * n).map(|k| f[k / n] * c[k] * f[k % n]).sum() };
+            directions.chunks_exact(n).map(variance).sum::<f64>() / 7.0
+        };
+        for each in 1..4 {
+            let rows = some(600 * each * n, 0.9);
+            let candidates = Candidates { rows: &rows, each, unknowns: n };
+            let found = gains(&candidates, &triangle, &directions).unwrap();
+            assert_eq!(found.len(), 600);
+            for (k, gain) in found.iter().enumerate() {
+                let with: Vec<f64> =
+                    information(candidates.block(k), n).iter().zip(&at_hand).map(|(a, b)| a + b).collect();
+                let expected = mean(&at_hand) - mean(&with);
+                assert!((gain - expected).abs() < 1e-11 * mean(&at_hand), "{gain} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_asked_is_refused() {
+        let (rows, triangle) = (some(12, 1.0), [1.0, 0.5, 0.0, 2.0]);
+        let candidates = Candidates { rows: &rows, each: 1, unknowns: 2 };
+        assert!(gains(&candidates, &triangle, &[1.0, 0.0]).is_ok());
+        assert!(gains(&candidates, &triangle[..3], &[1.0, 0.0]).is_err());
+        assert!(gains(&candidates, &triangle, &[]).is_err());
+        assert!(gains(&candidates, &[1.0, 0.5, 0.0, 0.0], &[1.0, 0.0]).is_err());
+        assert!(gains(&candidates, &triangle, &[f64::NAN, 0.0]).is_err());
+    }
+}

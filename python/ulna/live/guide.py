@@ -1,0 +1,286 @@
+"""Where to touch next: the touch, of very many, that takes most off the uncertainty of what will be measured.
+
+An artefact that was put somewhere is touched there more than once: its place costs five or six unknowns, and every
+touch gives three equations. So two things are weighed against each other: one more touch where it stands, and a new
+place with the touches that it would be given. Both are asked of the core beside all that is known (`_core.gains`), so a
+suggestion that is not followed costs nothing: the next one knows what was done instead. Places, postures and test
+lengths are those of a plan (`ulna.planning`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.labels import Labels
+from ulna.artefacts.readings import Readings
+from ulna.ground.arrays import F64, I64
+from ulna.live.running import RunningFit, SoFar
+from ulna.live.touches import Touch, readings_of, tips
+from ulna.planning.candidates import Candidates, draw
+from ulna.planning.information import Coordinates, candidate_rows
+from ulna.planning.spec import PlanSpec
+from ulna.planning.stands import Stand, elbow_sides, probe_from, stands_of
+from ulna.planning.targets import Tests, test_mm
+from ulna.planning.touchable import touchable
+from ulna.simulation.mover import Mover, travel_or_limits
+from ulna.simulation.places import postures_on
+
+TOUCHES = 20_000
+"""Of all candidates in new places, together."""
+IN_A_PLACE = 6
+"""Touches that a new place is judged by."""
+HERE = 200
+"""Postures tried where the artefact stands."""
+MOST_HERE = 16
+"""Touches in one place, then the artefact is moved: it may have moved by itself."""
+WORTH_MOVING = 1.2
+"""A new place must be worth so many times more, a touch: moving takes a minute."""
+MOVED_MM = 1.0
+"""The arm has moved so far that what touches are worth is looked at anew."""
+LOOKED_AT = 200
+"""Poses by which that is judged."""
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """One touch to take next."""
+
+    feature: int
+    """Index into the artefact's features."""
+    name: str
+    """Of the feature; empty where it has none."""
+    q_rad: F64
+    """(n,) a posture."""
+    point_mm: F64
+    """(3,) where it is, base frame."""
+    here: bool
+    """Whether the artefact stays where it is."""
+    stand: Stand
+    """Where it stands, or is to be put."""
+    gain: float
+    """By which part the touch lowers the mean variance of the test lengths; of a new place, a touch of those in it."""
+    elbow: str | None
+    """To which side of the line from shoulder to tip the elbow is."""
+    comes_from: str
+    """From where the probe comes."""
+
+
+@dataclass(frozen=True)
+class Worth:
+    """How sure a length would be, now."""
+
+    u_mm: float
+    """Root mean square over the test lengths of what the arm contributes to their standard uncertainty."""
+    worst_mm: float
+    """The largest."""
+    length_mm: float
+    """Of the test bars."""
+
+
+class Guide:
+    """Suggestions for one arm, artefact and purpose.
+
+    spec: as of a plan. Raises UlnaInputError where the artefact cannot be put anywhere, or joints have no limits.
+    """
+
+    def __init__(self, fit: RunningFit, spec: PlanSpec, seed: int = 0) -> None:
+        self._fit = fit
+        self._rng = np.random.default_rng([seed, 97])
+        arm = fit.arm
+        self._probe = arm.probe_index(spec.probe)
+        features = max(len(spec.artefact.features), 1)
+        scattered = kind_of(spec.artefact).scattered
+        touches = spec.touches if scattered else max(1, -(-IN_A_PLACE // features))
+        self._per_place = touches if scattered else touches * features
+        self.spec = replace(spec, candidates=max(1, TOUCHES // self._per_place), touches=touches, seed=seed)
+        self._mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
+        self._candidates = draw(self.spec, self._mover, self._probe, self._rng)
+        self._look_rad = self._mover.anywhere(LOOKED_AT, self._rng)
+        self._rows: F64 | None = None
+        self._tests: F64 | None = None
+        self._at_mm: F64 | None = None
+        self._at_hand: tuple[str, tuple[F64, F64, I64]] | None = None
+        self._planned: tuple[str, Candidates, int] | None = None
+
+    def worth(self, so_far: SoFar) -> Worth:
+        """What lengths are worth with what is known so far."""
+        variances = _variances(self._look()[1], so_far.covariance)
+        length_mm = test_mm(self._fit.arm, self.spec, self._probe)
+        return Worth(float(np.sqrt(variances.mean())), float(np.sqrt(variances.max())), length_mm)
+
+    def next(self, so_far: SoFar, standing: str | None = None) -> Suggestion:
+        """The best touch now. standing: where the artefact stands; None: nowhere yet. Raises UlnaInputError."""
+        import ulna._core as _core
+
+        rows, tests = self._look()
+        total = max(float(_variances(tests, so_far.covariance).mean()), 1e-300)
+        own = [] if standing is None else self._own(standing)
+        missing = self._missing(own)
+        if own and missing is not None:
+            return missing
+        gains = _core.gains(rows, so_far.triangle, tests) / self._per_place
+        best = int(gains.argmax())
+        if own and len(own) < MOST_HERE:
+            here = self._here(own, total)
+            if here is not None and here.gain * WORTH_MOVING >= gains[best] / total:
+                return here
+        self._planned = (standing or "", self._candidates, best)
+        return self._in_new_place(best, 0, float(gains[best]) / total)
+
+    def any_touch(self, rng: np.random.Generator, standing: str | None, most: int) -> Suggestion:
+        """A touch at random, so many in a place: what suggestions are compared with."""
+        own = [] if standing is None else self._own(standing)
+        missing = self._missing(own)
+        if own and missing is not None:
+            return missing
+        if own and len(own) < most:
+            points_mm, q_rad, feature = self._postures(own)
+            if len(q_rad):
+                k = int(rng.integers(len(q_rad)))
+                return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
+        best = int(rng.integers(len(self._candidates)))
+        self._planned = (standing or "", self._candidates, best)
+        return self._in_new_place(best, 0, 0.0)
+
+    def _own(self, standing: str) -> list[Touch]:
+        name = self.spec.artefact.name
+        return [each for each in self._fit.counting() if (each.artefact, each.standing) == (name, standing)]
+
+    def _missing(self, own: Sequence[Touch]) -> Suggestion | None:
+        """A feature that was not touched yet in this place; None where all were."""
+        if kind_of(self.spec.artefact).scattered or self._planned is None:
+            return None
+        touched = {touch.feature for touch in own}
+        names = self._names()
+        untouched = [k for k in range(len(names)) if k not in touched]
+        if not untouched:
+            return None
+        return self._in_new_place(self._planned[2], untouched[0], 0.0, bool(own))
+
+    def _in_new_place(self, number: int, feature: int, gain: float, here: bool = False) -> Suggestion:
+        candidates = self._candidates
+        poses = candidates.poses(np.array([number]))[0]
+        points_mm = candidates.features_mm[candidates.place[number]]
+        return self._suggestion(feature, poses[feature, 0], points_mm, here, gain)
+
+    def _here(self, own: Sequence[Touch], total: float) -> Suggestion | None:
+        """The best of many postures on the features where they are; None where none is found.
+
+        The touches in this place and one more are one block beside all others: what is left of its gain when that of
+        the touches alone is taken off is the touch's own.
+        """
+        import ulna._core as _core
+
+        points_mm, q_rad, feature = self._postures(own)
+        if not len(q_rad):
+            return None
+        known = self._fit.without(self.spec.artefact.name, own[0].standing)
+        tests = self._look()[1]
+        gains = _core.gains(self._with_one_more(own, q_rad, feature), known.triangle, tests)
+        alone = _core.gains(self._with_one_more(own, None, None), known.triangle, tests)[0]
+        best = int(gains.argmax())
+        gain = float(gains[best] - alone) / total
+        return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, gain)
+
+    def _postures(self, own: Sequence[Touch]) -> tuple[F64, F64, I64]:
+        """(K, 3) where the features are, (N, n) postures on them, and (N,) which feature each is on; found once in each
+        place."""
+        place = own[0].standing
+        if self._at_hand is None or self._at_hand[0] != place:
+            self._at_hand = place, self._find_postures(own)
+        return self._at_hand[1]
+
+    def _find_postures(self, own: Sequence[Touch]) -> tuple[F64, F64, I64]:
+        none = np.zeros((0, 3)), np.zeros((0, self._fit.arm.n)), np.zeros(0, np.int64)
+        if kind_of(self.spec.artefact).scattered:
+            return none
+        at_mm, feature = tips(self._fit.arm, own), np.array([touch.feature for touch in own])
+        count = len(self._names())
+        points_mm = np.array([at_mm[feature == k].mean(axis=0) for k in range(count)])
+        each = HERE // count
+        what = touchable(self.spec, self._fit.arm, self._probe)
+        standing = what.standing(self.spec, self._fit.arm)
+        points = np.repeat(points_mm, each, axis=0)
+        seed = int(self._rng.integers(2**63))
+        q_rad, reached = postures_on(standing, self._mover, points, self._probe, {}, seed)
+        return points_mm, q_rad[reached], np.repeat(np.arange(count), each)[reached]
+
+    def _with_one_more(self, own: Sequence[Touch], q_rad: F64 | None, feature: I64 | None) -> F64:
+        """(N, k, F) rows of the touches in one place with one of N more, each as a place of its own; without any: (1,
+        k, F) of the touches alone."""
+        count = 1 if q_rad is None else len(q_rad)
+        together = readings_of(own, self.spec.artefact)
+        many = together.select(np.tile(np.arange(len(own)), count))
+        many.placement = Labels(np.repeat(np.arange(count), len(own)), [str(k) for k in range(count)])
+        rows = self._fit.rows_of(many if q_rad is None or feature is None else _with(many, count, q_rad, feature))
+        return np.ascontiguousarray(rows.reshape(count, -1, rows.shape[1]))
+
+    def _suggestion(self, feature: int, q_rad: F64, points_mm: F64, here: bool, gain: float) -> Suggestion:
+        arm = self._fit.arm
+        pose, point_mm = np.ascontiguousarray(q_rad[None]), points_mm[feature]
+        return Suggestion(
+            feature=feature,
+            name=self._names()[feature],
+            q_rad=q_rad,
+            point_mm=point_mm,
+            here=here,
+            stand=stands_of(np.zeros(1, np.int64), points_mm[None])[0],
+            gain=gain,
+            elbow=elbow_sides(arm, pose, point_mm[None])[0],
+            comes_from=probe_from(arm, pose, point_mm[None])[0],
+        )
+
+    def _names(self) -> tuple[str, ...]:
+        return touchable(self.spec, self._fit.arm, self._probe).names
+
+    def _look(self) -> tuple[F64, F64]:
+        """Rows of all candidates, and of the test lengths, at the arm as it is known."""
+        arm = self._fit.arm
+        at_mm = arm.core.tip(self._look_rad, self._probe)
+        if self._rows is None or self._tests is None or self._at_mm is None or self._far(at_mm):
+            self._at_mm = at_mm
+            rows = candidate_rows(self.spec, arm, self._probe, self._arm_free(), self._candidates)
+            self._rows = self._padded(rows)
+            self._tests = self._tests_of(arm)
+        return self._rows, self._tests
+
+    def _far(self, at_mm: F64) -> bool:
+        assert self._at_mm is not None
+        return bool(np.linalg.norm(at_mm - self._at_mm, axis=1).max() > MOVED_MM)
+
+    def _arm_free(self) -> I64:
+        """Indices of the free parameters that are the arm's: dimensions of artefacts come after them."""
+        free = self._fit.free()
+        return free[free < len(self._fit.arm.parameter_names)]
+
+    def _tests_of(self, arm: Arm) -> F64:
+        free = self._arm_free()
+        whole = Coordinates(np.eye(len(free)), np.eye(len(free)))
+        rng = np.random.default_rng([self.spec.seed, 43])
+        return self._padded(Tests.of(arm, self.spec, self._mover, self._probe, free, whole, rng).length_rows)
+
+    def _padded(self, rows: F64) -> F64:
+        """With zeros for dimensions of artefacts that are fitted: a plan takes them as certified."""
+        more = len(self._fit.free()) - rows.shape[-1]
+        if not more:
+            return np.ascontiguousarray(rows)
+        return np.concatenate([rows, np.zeros((*rows.shape[:-1], more))], axis=-1)
+
+
+def _with(many: Readings, count: int, q_rad: F64, feature: I64) -> Readings:
+    """One reading more in each of so many places."""
+    place = np.concatenate([many.labels.codes, np.arange(count)])
+    more = many.select(np.concatenate([np.arange(len(many)), np.zeros(count, dtype=np.int64)]))
+    more.q_rad[len(many) :], more.feature[len(many) :] = q_rad, feature
+    more.placement = Labels(place, many.labels.names)
+    return more.select(np.argsort(place, kind="stable"))
+
+
+def _variances(rows: F64, covariance: F64) -> F64:
+    variances: F64 = np.maximum(np.einsum("ij,ij->i", rows @ covariance, rows), 0.0)
+    return variances
