@@ -34,7 +34,7 @@ def committed(root: Path) -> list[Path]:
 def texts(root: Path) -> list[tuple[Path, str]]:
     out = []
     for path in committed(root):
-        if path.suffix in {".png", ".parquet", ".ico", ".zip"}:
+        if path.suffix in {".png", ".parquet", ".ico", ".zip", ".journal"}:
             continue
         out.append((path.relative_to(root), path.read_text(encoding="utf-8")))
     return out

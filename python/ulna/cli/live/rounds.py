@@ -50,9 +50,9 @@ class Round:
         return (many - few) / max(now - begin, 1e-9)
 
     @property
-    def age_s(self) -> float | None:
-        """How old the newest sample is."""
-        return None if self.newest is None else time.monotonic() - float(self.newest.samples.t_host_s[-1])
+    def silent_s(self) -> float:
+        """Since the newest sample came."""
+        return time.monotonic() - self._arrivals[-1][0] if self._arrivals else 0.0
 
     def as_dict(self) -> dict[str, Any]:
         return {"samples": self.count, "faults": self.counted, "doubtful": self.stream.doubtful, "ended": self.why}

@@ -65,11 +65,9 @@ def watched(known: Round) -> RenderableType:
     """A screen of 80 columns."""
     stream = known.stream
     hello, mapping = stream.source.hello, stream.mapping
-    age = known.age_s
-    late = age is not None and age > 1.0 and known.why is None
     head = Text(f"{for_people(hello.device)[:44]}  {known.rate_hz:.0f}/s  {known.count} samples")
-    if late:
-        head.append(f"  silent for {age:.0f} s", style="bold")
+    if known.silent_s > 1.0 and known.why is None:
+        head.append(f"  silent for {known.silent_s:.0f} s", style="bold")
     if stream.doubtful:
         head.append("  DOUBTFUL", style="bold reverse")
     table = Table(box=None, pad_edge=False, show_header=True, header_style="")
