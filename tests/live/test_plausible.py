@@ -112,13 +112,17 @@ def test_a_gap_is_named_once(clock: bool) -> None:
     assert not doubtful
 
 
-def test_samples_that_come_late_together_are_no_gap_of_the_device_but_of_the_stream() -> None:
+def test_samples_that_come_late_together_are_no_gap_where_the_device_has_a_clock() -> None:
     host, device, raw = turning()
     host[200:208] = host[208]  # held up for 80 ms on their way, none lost
+    assert looked(host, device, raw, 1)[0] == []
+    assert looked(host, None, raw, 1)[0] == [GAP]
+    host, device, raw = turning()
+    host[200:320] = host[320]  # what is shown was old for more than a second
     assert looked(host, device, raw, 1)[0] == [GAP]
     host, device, raw = turning()
     host[200:203] = host[203]  # 30 ms is what a USB adapter does
-    assert looked(host, device, raw, 1)[0] == []
+    assert looked(host, None, raw, 1)[0] == []
 
 
 @pytest.mark.parametrize("clock", [True, False])

@@ -36,10 +36,13 @@ IN_A_PLACE = 6
 """Touches that a new place is judged by."""
 HERE = 200
 """Postures tried where the artefact stands."""
-MOST_HERE = 16
+MOST_HERE = 12
 """Touches in one place, then the artefact is moved: it may have moved by itself."""
 WORTH_MOVING = 1.2
 """A new place must be worth so many times more, a touch: moving takes a minute."""
+LOOKED_AHEAD = 300
+"""Candidates by which the touches to a goal are counted, and the most places that are looked ahead."""
+MOST_AHEAD = 25
 MOVED_MM = 1.0
 """The arm has moved so far that what touches are worth is looked at anew."""
 LOOKED_AT = 200
@@ -98,9 +101,10 @@ class Guide:
         touches = spec.touches if scattered else max(1, -(-IN_A_PLACE // features))
         self._per_place = touches if scattered else touches * features
         self.spec = replace(spec, candidates=max(1, TOUCHES // self._per_place), touches=touches, seed=seed)
-        self._mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
-        self._candidates = draw(self.spec, self._mover, self._probe, self._rng)
-        self._look_rad = self._mover.anywhere(LOOKED_AT, self._rng)
+        self.mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
+        """Finds postures."""
+        self._candidates = draw(self.spec, self.mover, self._probe, self._rng)
+        self._look_rad = self.mover.anywhere(LOOKED_AT, self._rng)
         self._rows: F64 | None = None
         self._tests: F64 | None = None
         self._at_mm: F64 | None = None
@@ -131,6 +135,35 @@ class Guide:
                 return here
         self._planned = (standing or "", self._candidates, best)
         return self._in_new_place(best, 0, float(gains[best]) / total)
+
+    def touches_more(self, so_far: SoFar, goal_u_mm: float) -> int | None:
+        """About how many touches to an uncertainty of a length, each place the best of some: None where it is
+        reached, or is not in sight."""
+        import ulna._core as _core
+
+        rows, tests = self._look()
+        some = np.ascontiguousarray(rows[:: max(1, len(rows) // LOOKED_AHEAD)])
+        triangle, goal = so_far.triangle, goal_u_mm**2
+        if float(_variances(tests, so_far.covariance).mean()) <= goal:
+            return None
+        # what is not known of artefacts no touch can lower
+        beside = max(0.0, float(_variances(tests, so_far.covariance).mean()) - _mean_variance(tests, triangle))
+        for place in range(1, MOST_AHEAD + 1):
+            best = int(_core.gains(some, triangle, tests).argmax())
+            triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, some[best]]), mode="r"))
+            now = _mean_variance(tests, triangle)
+            if now + beside <= goal:
+                return place * self._per_place
+        return None
+
+    @property
+    def determinable(self) -> int:
+        """Combinations of the free parameters that touches of this artefact can determine at all."""
+        rows = self._look()[0]
+        free = self._arm_free()
+        units = np.array(self._fit.arm.parameter_units)[free]
+        natural = np.where(units == "mm", 1.0, self._fit.arm.core.reach_mm(self._probe))
+        return Coordinates.of(rows[:, :, : len(free)].reshape(-1, len(free)), natural).rank
 
     def any_touch(self, rng: np.random.Generator, standing: str | None, most: int) -> Suggestion:
         """A touch at random, so many in a place: what suggestions are compared with."""
@@ -207,7 +240,7 @@ class Guide:
         standing = what.standing(self.spec, self._fit.arm)
         points = np.repeat(points_mm, each, axis=0)
         seed = int(self._rng.integers(2**63))
-        q_rad, reached = postures_on(standing, self._mover, points, self._probe, {}, seed)
+        q_rad, reached = postures_on(standing, self.mover, points, self._probe, {}, seed)
         return points_mm, q_rad[reached], np.repeat(np.arange(count), each)[reached]
 
     def _with_one_more(self, own: Sequence[Touch], q_rad: F64 | None, feature: I64 | None) -> F64:
@@ -262,7 +295,7 @@ class Guide:
         free = self._arm_free()
         whole = Coordinates(np.eye(len(free)), np.eye(len(free)))
         rng = np.random.default_rng([self.spec.seed, 43])
-        return self._padded(Tests.of(arm, self.spec, self._mover, self._probe, free, whole, rng).length_rows)
+        return self._padded(Tests.of(arm, self.spec, self.mover, self._probe, free, whole, rng).length_rows)
 
     def _padded(self, rows: F64) -> F64:
         """With zeros for dimensions of artefacts that are fitted: a plan takes them as certified."""
@@ -279,6 +312,12 @@ def _with(many: Readings, count: int, q_rad: F64, feature: I64) -> Readings:
     more.q_rad[len(many) :], more.feature[len(many) :] = q_rad, feature
     more.placement = Labels(place, many.labels.names)
     return more.select(np.argsort(place, kind="stable"))
+
+
+def _mean_variance(tests: F64, triangle: F64) -> float:
+    """Of the test lengths, from the triangle of what is known."""
+    half = np.linalg.solve(triangle.T, tests.T)
+    return float((half**2).sum(axis=0).mean())
 
 
 def _variances(rows: F64, covariance: F64) -> F64:

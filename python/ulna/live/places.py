@@ -26,8 +26,8 @@ class Told:
 
 
 def tell(arm: Arm, artefact: Artefact, own: list[Touch], tip_mm: F64, expected: int | None) -> Told:
-    """own: the touches in the place where the artefact stood last; tip_mm: (3,) of the new one; expected: the feature that
-    was suggested, None: none was."""
+    """own: the touches in the place where the artefact stood last; tip_mm: (3,) of the new one; expected: the feature
+    that was suggested, None: none was."""
     first = 0 if expected is None else expected
     if kind_of(artefact).scattered or not artefact.features:
         return Told(0, False)
@@ -43,8 +43,8 @@ def tell(arm: Arm, artefact: Artefact, own: list[Touch], tip_mm: F64, expected: 
 
 
 def _off(arm: Arm, artefact: Artefact, own: list[Touch], tip_mm: F64) -> F64:
-    """(K,) how far the tip is from each feature: from where that was touched, or by how much its distances to those that
-    were touched are off."""
+    """(K,) how far the tip is from each feature: from where that was touched, or by how much its distances to those
+    that were touched are off."""
     stated_mm = np.array(list(artefact.features.values()), dtype=np.float64)
     at_mm, feature = tips(arm, own), np.array([touch.feature for touch in own])
     touched = np.unique(feature)

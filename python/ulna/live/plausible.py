@@ -125,7 +125,8 @@ class Plausible:
             clock = self._clock(dt_device, dt_host, before.t_device_s, row.t_device_s)
             faults += [Fault(kind, t, text) for kind, text in clock]
             if not clock:
-                dt = max(dt_host, dt_device)
+                # readings that waited on their way and came together have no gap between them
+                dt = dt_device if dt_host < _CLOCK_S else max(dt_host, dt_device)
         self._repeating = False
         if dt > self._gap_limit():
             faults.append(Fault(GAP, t, f"a gap of {_milliseconds(dt)} in the stream."))

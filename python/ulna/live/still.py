@@ -10,7 +10,7 @@ sample:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,12 @@ class StillLimits:
     """Most mean square of the whitened spread, 1 where nothing moves."""
     drift_mm: float
     """A drift over the window that is let pass, whatever the noise is."""
+    spread_mm: float | None = None
+    """Most standard deviation of the tip, where somebody stated it: `spread` is not asked then."""
+    drift_stated: bool = False
+    """Whether `drift_mm` was stated: then it alone counts."""
+    rearm_mm: float = REARM_MM
+    """How far the tip must have been from the last touch."""
     sees: bool = True
     """Whether the slowest creep and the least tremor are told from rest: not at every rate and noise."""
 
@@ -62,6 +68,11 @@ class StillLimits:
                 return limits
         count = max(LEAST_SAMPLES, int(WINDOWS_S[-1] * rate_hz) + 1)
         return cls(max(WINDOWS_S[-1], count / rate_hz), count, _most_spread(count), OF_SEAT * seat_mm, sees=False)
+
+    def lasting(self, window_s: float, rate_hz: float) -> StillLimits:
+        """The same over another time."""
+        count = max(LEAST_SAMPLES, int(window_s * rate_hz) + 1)
+        return replace(self, window_s=window_s, samples=count, spread=_most_spread(count))
 
     def _sees(self, noise_mm: float, rate_hz: float) -> bool:
         if noise_mm <= 0.0:
@@ -116,13 +127,22 @@ def stillness(t_s: F64, p_mm: F64, covariance_mm2: F64, limits: StillLimits) -> 
     drift_chi2 = float(along @ along) * square
     drift_mm = float(np.linalg.norm(slope)) * seconds
     own = np.linalg.eigvalsh(off_mm.T @ off_mm / max(1, count - 1))
+    spread_mm = float(np.sqrt(max(own[-1], 0.0)))
     return Stillness(
         samples=count,
         seconds=seconds,
         mean_mm=mean_mm,
-        spread_mm=float(np.sqrt(max(own[-1], 0.0))),
+        spread_mm=spread_mm,
         drift_mm=drift_mm,
         spread=spread,
         drift_chi2=drift_chi2,
-        still=spread <= limits.spread and (drift_chi2 <= DRIFT_CHI2 or drift_mm <= limits.drift_mm),
+        still=_quiet(spread, spread_mm, limits) and _in_place(drift_chi2, drift_mm, limits),
     )
+
+
+def _quiet(spread: float, spread_mm: float, limits: StillLimits) -> bool:
+    return spread <= limits.spread if limits.spread_mm is None else spread_mm <= limits.spread_mm
+
+
+def _in_place(drift_chi2: float, drift_mm: float, limits: StillLimits) -> bool:
+    return drift_mm <= limits.drift_mm or (drift_chi2 <= DRIFT_CHI2 and not limits.drift_stated)

@@ -94,8 +94,9 @@ class LimitsTable(Strict):
 class StillTable(Strict):
     """When the tip stands still."""
 
-    seconds: Annotated[float, Field(gt=0, le=60)] = 0.3
-    """How long it must."""
+    seconds: Annotated[float, Field(gt=0, le=60)] | None = None
+    """How long it must; where it is not given, as long as it takes to tell a slow hand from one that rests, by the
+    arm's noise and the stream's rate."""
     spread: Positive | None = None
     """mm: standard deviation of the tip; from the arm's noise where it is not given."""
     drift: Positive | None = None

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ulna.ground.arrays import F64
-from ulna.live.still import REARM_MM, StillLimits, Stillness, stillness
+from ulna.live.still import StillLimits, Stillness, stillness
 
 NEAR_STOP_RAD = np.radians(0.5)
 """A joint so near to its stop leans on it."""
@@ -39,8 +39,8 @@ class Trigger:
     """Watches windows of a stream; each rest of the tip is taken once."""
 
     limits: StillLimits
-    travel_rad: F64 | None = None
-    """(n, 2) how far the joints turn; NaN where nobody knows."""
+    stops_rad: F64 | None = None
+    """(n, 2) where the joints' stops are; NaN where there is none, or nobody knows."""
     by_itself: bool = True
     """Whether a rest is a touch without being asked for."""
     last_mm: F64 | None = None
@@ -51,7 +51,7 @@ class Trigger:
         """The newest samples of a stream, (N,), (N, n), (N, 3): a touch, why there is none though the tip rests, or
         nothing yet. covariance_mm2: (3, 3) of one sample's tip."""
         if self.last_mm is not None and not self.armed:
-            self.armed = bool(np.linalg.norm(p_mm[-1] - self.last_mm) > REARM_MM)
+            self.armed = bool(np.linalg.norm(p_mm[-1] - self.last_mm) > self.limits.rearm_mm)
         if not (self.by_itself and self.armed):
             return None
         window = self._window(t_s)
@@ -92,9 +92,9 @@ class Trigger:
         return Taken(mean_rad, found, float(t_s[0]), float(t_s[-1]))
 
     def _at_stop(self, q_rad: F64) -> int | None:
-        if self.travel_rad is None:
+        if self.stops_rad is None:
             return None
-        low, high = self.travel_rad.T
+        low, high = self.stops_rad.T
         near = (q_rad < low + NEAR_STOP_RAD) | (q_rad > high - NEAR_STOP_RAD)
         return int(np.flatnonzero(near)[0]) + 1 if near.any() else None
 

@@ -1,0 +1,193 @@
+"""How `ulna live touch` goes round: read, show, and do what is asked for by keys or by lines."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from ulna.cli.interrupting import asked_to_end
+from ulna.cli.printed.touching import happened_lines, meter_lines, record_of, screen
+from ulna.ground.errors import UlnaInputError
+from ulna.live.faults import Fault
+from ulna.live.session import Event, Happened, Meter, Session
+from ulna.live.source import SourceEnded
+from ulna.live.trigger import Refused
+
+FRAMES_HZ = 20.0
+"""A screen that is read while both hands are on an arm need not be faster; samples are, all the same."""
+READ_S = 0.01
+KEYS = {" ": "touch", "n": "moved", "w": "withdraw", "t": "trust", "q": "end"}
+"""Key → the word that does the same."""
+LAST = 4
+"""Sentences that stay on the screen."""
+
+
+class Bench:
+    """A session with somebody at it."""
+
+    def __init__(self, session: Session, as_json: bool, touches: int | None, seconds: float | None) -> None:
+        self.session = session
+        self.as_json, self.touches, self.seconds = as_json, touches, seconds
+        self.meter: Meter | None = None
+        self.said: list[str] = []
+        self._ended = False
+
+    def run(self) -> None:
+        """Until it is ended: by a key or a word, after so many touches or seconds, by the source or by Ctrl-C."""
+        at_terminal = sys.stdout.isatty() and not self.as_json
+        begin = shown = time.monotonic()
+        self._known()
+        with asked_to_end() as asked, _asking() as words, _showing(at_terminal) as show:
+            while not (self._ended or asked.is_set()):
+                if self.seconds is not None and time.monotonic() - begin >= self.seconds:
+                    break
+                try:
+                    frames = self.session.stream.read(READ_S)
+                except SourceEnded as ended:
+                    self._tell([f"The source ended: {ended}"])
+                    break
+                for event in self.session.feed(frames):
+                    self._event(event)
+                for word in words():
+                    self._do(word)
+                if show is not None and time.monotonic() - shown >= 1.0 / FRAMES_HZ:
+                    show(screen(self.session, self.meter, self.said))
+                    shown = time.monotonic()
+
+    def _do(self, line: str) -> None:
+        word, _, rest = line.strip().partition(" ")
+        try:
+            match word:
+                case "":
+                    return
+                case "touch":
+                    for event in self.session.ask():
+                        self._event(event)
+                case "moved":
+                    self.session.moved()
+                    self._known()
+                case "withdraw":
+                    self._withdraw(rest)
+                case "trust":
+                    self.session.trust()
+                    self._tell(["The angles are taken for right again."])
+                case "end":
+                    self._ended = True
+                case _:
+                    words = ", ".join(KEYS.values())
+                    self._tell([f"'{word}' is no word here; expected one of {words}."])
+        except UlnaInputError as error:
+            self._tell([str(error)])
+
+    def _withdraw(self, rest: str) -> None:
+        count = self.session.fit.counting()
+        number, _, reason = rest.partition(" ")
+        if not number and count:
+            number = str(count[-1].number)
+        if not number.isdecimal():
+            raise UlnaInputError(f"withdraw: got '{rest}'; expected the number of a touch and a reason. Name one.")
+        self.session.withdraw(int(number), reason or "withdrawn at the arm")
+        self._tell([f"Touch {number} does not count any more."])
+        self._known()
+
+    def _event(self, event: Event) -> None:
+        if self.as_json:
+            print(json.dumps(record_of(event), ensure_ascii=False, allow_nan=False), flush=True)
+        match event:
+            case Fault():
+                self._tell([f"{event.kind}: {event.text}"], told=self.as_json)
+            case Refused():
+                _tone(False, self.as_json)
+                self._tell([f"Not taken: {event.reason}."], told=self.as_json)
+            case Happened():
+                _tone(True, self.as_json)
+                self._known()
+                names = list(self.session.spec.artefact.features)
+                self._tell(happened_lines(event, names), told=self.as_json)
+                if self.touches is not None and len(self.session.fit.counting()) >= self.touches:
+                    self._ended = True
+
+    def _known(self) -> None:
+        """What is known now, said."""
+        self.meter = self.session.meter()
+        if self.as_json:
+            print(json.dumps(record_of(self.meter), ensure_ascii=False, allow_nan=False), flush=True)
+        elif not sys.stdout.isatty():
+            for line in meter_lines(self.meter):
+                print(line, flush=True)
+
+    def _tell(self, lines: list[str], told: bool = False) -> None:
+        self.said = [*self.said, *lines][-LAST:]
+        if not told and not sys.stdout.isatty():
+            for line in lines:
+                print(line, file=sys.stderr if self.as_json else sys.stdout, flush=True)
+
+
+def _tone(taken: bool, as_json: bool) -> None:
+    """One bell for a touch, none for a refusal: terminals have one tone."""
+    if taken and not as_json and sys.stdout.isatty():
+        sys.stderr.write("\a")
+        sys.stderr.flush()
+
+
+@contextmanager
+def _asking() -> Iterator[Callable[[], list[str]]]:
+    """Words that came since the last call: keys of a terminal, lines of anything else."""
+    try:
+        stdin = sys.stdin.fileno()
+    except (OSError, ValueError, AttributeError):
+        yield list
+        return
+    if os.isatty(stdin):
+        with _single_keys(stdin):
+            yield lambda: [KEYS[key] for key in _waiting(stdin) if key in KEYS]
+        return
+    rest = ""
+
+    def lines() -> list[str]:
+        nonlocal rest
+        rest += _waiting(stdin)
+        *whole, rest = rest.split("\n")
+        return whole
+
+    yield lines
+
+
+@contextmanager
+def _single_keys(stdin: int) -> Iterator[None]:
+    import termios
+    import tty
+
+    before = termios.tcgetattr(stdin)
+    try:
+        tty.setcbreak(stdin)
+        yield
+    finally:
+        termios.tcsetattr(stdin, termios.TCSADRAIN, before)
+
+
+def _waiting(stdin: int) -> str:
+    """What can be read without waiting."""
+    try:
+        if not select.select([stdin], [], [], 0.0)[0]:
+            return ""
+        return os.read(stdin, 4096).decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+@contextmanager
+def _showing(at_terminal: bool) -> Iterator[Callable[[object], None] | None]:
+    if not at_terminal:
+        yield None
+        return
+    from rich.console import Console
+    from rich.live import Live
+
+    with Live(console=Console(highlight=False), auto_refresh=False, transient=True) as live:
+        yield lambda parts: live.update(parts, refresh=True)  # type: ignore[arg-type]

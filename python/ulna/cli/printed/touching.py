@@ -1,0 +1,138 @@
+"""What `ulna live touch` shows: one line of what is known, what to do next, what happened."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from ulna.ground.errors import for_people
+from ulna.live.faults import Fault
+from ulna.live.session import SUSPICIOUS, Event, Happened, Meter, as_dict
+from ulna.live.trigger import Refused
+
+if TYPE_CHECKING:
+    from ulna.live.session import Session
+
+_BAR = 10
+
+
+def meter_line(meter: Meter) -> str:
+    """ "23 of 25 known · U(500 mm) 71 µm → goal 40 µm · about 18 touches more"."""
+    known = min(meter.so_far.determined, meter.determinable)
+    worth = meter.worth
+    line = f"{known} of {meter.determinable} known · U({worth.length_mm:.0f} mm) {_length(2.0 * worth.u_mm)}"
+    if meter.goal_u_mm is None:
+        return line
+    goal = _length(2.0 * meter.goal_u_mm)
+    if worth.u_mm <= meter.goal_u_mm:
+        return f"{line}: goal {goal} reached"
+    more = "" if meter.touches_more is None else f" · about {meter.touches_more} touches more"
+    return f"{line} → goal {goal}{more}"
+
+
+def next_line(meter: Meter) -> str:
+    """Where to touch next, as one says it to somebody."""
+    suggestion = meter.next
+    what = f"touch {for_people(suggestion.name)}" if suggestion.name else "touch it"
+    held = [f"elbow {suggestion.elbow}"] if suggestion.elbow else []
+    held.append(f"probe from {suggestion.comes_from}")
+    how = ", ".join([what, *held])
+    if suggestion.here:
+        return f"Next, where it stands: {how}"
+    x, y, z = suggestion.stand.points_mm.mean(axis=0)
+    stand = suggestion.stand
+    lies = "" if stand.lies == "nowhere" else f", {stand.lies}, {stand.azimuth_deg:.0f}°"
+    return f"Next, put it at x {x:.0f}, y {y:.0f}, z {z:.0f} mm{lies}: {how}"
+
+
+def meter_lines(meter: Meter) -> list[str]:
+    """Both."""
+    return [meter_line(meter), next_line(meter)]
+
+
+def happened_lines(happened: Happened, names: list[str]) -> list[str]:
+    """A touch that was taken, and what is odd about it."""
+    touch = happened.touch
+    feature = f" of {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
+    moved = " (it was moved: a new place)" if happened.moved else ""
+    said = f"Touch {touch.number}{feature} in place {touch.standing}{moved}: {touch.samples} samples, "
+    said += f"spread {_length(touch.spread_mm)}"
+    if happened.scatter_mm is not None:
+        said += f", scatter in its seat {_length(happened.scatter_mm)}"
+    lines = [said + "."]
+    if happened.off_mm is not None and happened.times is not None and happened.times > SUSPICIOUS:
+        lines.append(
+            f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated? Repeat it, and "
+            "withdraw this one (w), or keep it."
+        )
+    return lines
+
+
+def screen(session: Session, meter: Meter | None, said: list[str]) -> RenderableType:
+    """80 columns, always as many lines."""
+    window = session.window
+    place = Text("nothing has come yet")
+    if window is not None:
+        tip = session.arm_now.core.tip(window.q_rad[-1:].copy(), session.arm.probe_index(session.spec.probe))[0]
+        bar = "█" * round(_BAR * session.rests)
+        place = Text(f"x {tip[0]:9.2f}  y {tip[1]:9.2f}  z {tip[2]:9.2f} mm   still [{bar:<{_BAR}}]", style="bold")
+    if session.stream.doubtful:
+        place.append("  DOUBTFUL (t)", style="bold reverse")
+    rows: list[RenderableType] = [place]
+    if meter is not None:
+        rows += [Text(meter_line(meter), style="bold"), Text(next_line(meter))]
+    rows += [Text(""), *(Text(line) for line in said)]
+    rows += [Text(""), Text("space touch   n moved   w withdraw the last   t angles are right   q end", style="dim")]
+    return Group(*rows)
+
+
+def record_of(event: Event | Meter) -> dict[str, Any]:
+    """As JSON has it."""
+    match event:
+        case Fault():
+            return {"fault": event.as_dict()}
+        case Refused():
+            return {"refused": event.reason}
+        case Happened():
+            judged = {"scatter_mm": event.scatter_mm, "off_mm": event.off_mm, "times": event.times}
+            return {"touch": as_dict(event.touch) | {"moved": event.moved} | judged}
+        case Meter():
+            return {"known": _known(event)}
+    raise AssertionError(event)
+
+
+def _known(meter: Meter) -> dict[str, Any]:
+    suggestion = meter.next
+    so_far = meter.so_far
+    return {
+        "touches": so_far.touches,
+        "determined": so_far.determined,
+        "determinable": meter.determinable,
+        "not_determined": so_far.not_determined,
+        **asdict(meter.worth),
+        "goal_u_mm": meter.goal_u_mm,
+        "touches_more": meter.touches_more,
+        "next": {
+            "feature": suggestion.name,
+            "here": suggestion.here,
+            "point_mm": suggestion.point_mm.tolist(),
+            "places_mm": suggestion.stand.points_mm.tolist(),
+            "q_rad": suggestion.q_rad.tolist(),
+            "elbow": suggestion.elbow,
+            "from": suggestion.comes_from,
+            "gain": suggestion.gain,
+        },
+    }
+
+
+def _length(mm: float) -> str:
+    """Three digits of a small length, in the unit in which people say it."""
+    if not math.isfinite(mm):
+        return "–"
+    if mm >= 1.0:
+        return f"{mm:.1f} mm"
+    return f"{1000.0 * mm:.0f} µm" if mm >= 0.01 else f"{1000.0 * mm:.1f} µm"

@@ -1,0 +1,80 @@
+"""What a session leaves: its journal, the touches as readings of a study, and the arm that was calibrated with them.
+
+The journal is there from the first touch on; a session that was interrupted goes on from it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ulna.arm.file import arm_toml
+from ulna.calibration.calibrate import calibrate
+from ulna.calibration.result import Result
+from ulna.formats.output import output_folder
+from ulna.ground.errors import UlnaInputError
+from ulna.live.journal import TOUCH, WITHDRAWAL, Journal, Reading
+from ulna.live.running import RunningFit
+from ulna.live.samples import Hello
+from ulna.live.session import from_dict
+from ulna.live.touches import Touch
+from ulna.simulation.study_files import names_for, study_toml, write_tables
+from ulna.study.study import Study
+
+JOURNAL = "session.journal"
+RESULT = "result"
+
+
+def begin(folder: Path, hello: Hello, **head: object) -> tuple[Journal, list[Touch], str | None]:
+    """The journal of a session in a folder, the touches that are in it already, and what was cut off its end, in words.
+
+    Raises UlnaInputError where a session has ended there, or the folder holds something else.
+    """
+    path = folder / JOURNAL
+    if (folder / "study.toml").exists() or (folder / RESULT).exists():
+        raise UlnaInputError(
+            f"{folder}: a session has ended there (study.toml); expected a folder that is not there yet, or one whose "
+            "session was interrupted. Name another."
+        )
+    if path.exists():
+        touches = touches_in(path)
+        journal, cut = Journal.open(path)
+        return journal, touches, cut
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UlnaInputError(f"{folder}: cannot be made ({error.strerror}). Choose another place.") from None
+    return Journal.create(path, hello, **head), [], None
+
+
+def touches_in(path: Path) -> list[Touch]:
+    """The touches of a journal, the withdrawn ones with their reason. Raises UlnaInputError."""
+    from dataclasses import replace
+
+    found: dict[int, Touch] = {}
+    for record in Reading(path):
+        if record.kind == TOUCH:
+            touch = from_dict(record.content)
+            found[touch.number] = touch
+        elif record.kind == WITHDRAWAL:
+            number = int(record.content["number"])
+            found[number] = replace(found[number], withdrawn=str(record.content["reason"]))
+    return list(found.values())
+
+
+def write_study(fit: RunningFit, folder: Path) -> Path:
+    """The touches that count as readings, with the arm where it began and the study that names both. Raises
+    UlnaInputError where there are none."""
+    study = fit.study()
+    names = [name for name in names_for([group.artefact for group in study.readings]) if not name.startswith("truth")]
+    with output_folder(folder, names, force=False) as staged:
+        (staged / "arm.toml").write_text(arm_toml(study.arm), encoding="utf-8")
+        (staged / "study.toml").write_text(study_toml(study, counts=False), encoding="utf-8")
+        write_tables(study, None, staged)
+    return folder / "study.toml"
+
+
+def write_result(study: Path) -> Result:
+    """The calibration of a study, beside it. Raises UlnaInputError."""
+    result = calibrate(Study.load(study))
+    result.save(study.parent / RESULT)
+    return result

@@ -1,0 +1,194 @@
+"""A session: a hand that follows the guide ends with the arm that it holds, and what is wrong is said and not taken."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.live.hands import Hand, off_its_drawing, platinum_plan
+
+import ulna
+from ulna.live.ending import JOURNAL, begin, touches_in, write_result, write_study
+from ulna.live.faults import JUMP, Fault
+from ulna.live.journal import SAMPLES, Journal, Reading
+from ulna.live.session import Event, Happened, Session
+from ulna.live.source import SourceEnded
+from ulna.live.stream import Stream
+from ulna.live.trigger import Refused
+from ulna.planning.information import Coordinates
+from ulna.planning.targets import Tests
+
+GOAL_MM = 0.040
+
+
+def hand_of(seed: int) -> tuple[ulna.Arm, Hand]:
+    arm, spec = platinum_plan()
+    rng = np.random.default_rng(seed)
+    truth = off_its_drawing(arm, spec.hold, rng)
+    assert spec.travel_rad is not None
+    return arm, Hand(truth, spec, spec.travel_rad, rng)
+
+
+def session_of(arm: ulna.Arm, hand: Hand, journal: Journal | None = None, **how: bool) -> Session:
+    return Session(arm, hand.spec, Stream(hand, hand.stated()), journal, goal_u_mm=GOAL_MM / 2.0, **how)
+
+
+def played(session: Session) -> list[Event]:
+    """All that came of what the hand did."""
+    found: list[Event] = []
+    while True:
+        try:
+            frames = session.stream.read(0.0)
+        except SourceEnded:
+            return found
+        found += session.feed(frames)
+
+
+def length_errors(truth: ulna.Arm, found: ulna.Arm, session: Session) -> np.ndarray:
+    """Of fresh 500 mm bars anywhere."""
+    guide = session.guide
+    rng = np.random.default_rng(77)
+    nothing = Coordinates(np.eye(1), np.eye(1))
+    q_rad = Tests.of(truth, guide.spec, guide.mover, 0, np.arange(1), nothing, rng).q_rad
+    ends = [arm.core.tip(q_rad.reshape(-1, arm.n), 0).reshape(-1, 2, 3) for arm in (truth, found)]
+    lengths = [np.linalg.norm(each[:, 1] - each[:, 0], axis=1) for each in ends]
+    return lengths[1] - lengths[0]
+
+
+def test_a_hand_that_follows_the_guide_reaches_the_goal(tmp_path: Path) -> None:
+    arm, hand = hand_of(3)
+    journal, known, cut = begin(tmp_path / "evening", hand.hello)
+    assert not known
+    assert cut is None
+    session = session_of(arm, hand, journal)
+    for _ in range(60):
+        meter = session.meter()
+        if session.fit.fitted is not None and meter.worth.u_mm <= GOAL_MM / 2.0:
+            break
+        if not hand.follow(meter.next):
+            session.moved()
+            continue
+        events = played(session)
+        assert [type(event) for event in events] == [Happened], events
+    journal.close()
+    taken = session.fit.counting()
+    assert 12 <= len(taken) <= 40
+    rms = float(np.sqrt((length_errors(hand.truth, session.arm_now, session) ** 2).mean()))
+    assert rms < 2.0 * meter.worth.u_mm
+    # what is left: readings that calibrate to the same arm
+    study = write_study(session.fit, tmp_path / "evening")
+    result = write_result(study)
+    off = np.array(list(result.arm.core.parameters)) - session.arm_now.core.parameters
+    assert np.abs(off).max() < 1e-6
+    assert [touch.number for touch in touches_in(tmp_path / "evening" / JOURNAL)] == [touch.number for touch in taken]
+    with pytest.raises(ulna.UlnaInputError, match="a session has ended there"):
+        begin(tmp_path / "evening", hand.hello)
+
+
+def test_the_same_stream_gives_the_same_touches_however_it_comes(tmp_path: Path) -> None:
+    arm, hand = hand_of(4)
+    with Journal.create(tmp_path / "whole.journal", hand.hello) as journal:
+        session = session_of(arm, hand, journal, keep_all=True)
+        for _ in range(6):
+            hand.follow(session.meter().next)
+            played(session)
+    first = session.fit.touches
+    assert len(first) == 6
+    for size in (1, 17, 5000):
+        again = Hand(hand.truth, hand.spec, hand.travel_rad, np.random.default_rng(0))
+        for record in Reading(tmp_path / "whole.journal"):
+            if record.kind == SAMPLES:
+                again.samples.extend(record.content[k : k + size] for k in range(0, len(record.content), size))
+        replayed = session_of(arm, again)
+        played(replayed)
+        assert [touch.q_rad.tobytes() for touch in replayed.fit.touches] == [touch.q_rad.tobytes() for touch in first]
+        assert [(touch.begun_s, touch.ended_s, touch.samples) for touch in replayed.fit.touches] == [
+            (touch.begun_s, touch.ended_s, touch.samples) for touch in first
+        ]
+
+
+def test_a_session_goes_on_where_it_was_killed(tmp_path: Path) -> None:
+    arm, hand = hand_of(5)
+    journal, _, _ = begin(tmp_path / "s", hand.hello)
+    session = session_of(arm, hand, journal)
+    for _ in range(8):
+        hand.follow(session.meter().next)
+        played(session)
+    session.withdraw(3, "the bar slipped")
+    journal.close()
+    path = tmp_path / "s" / JOURNAL
+    path.write_bytes(path.read_bytes() + b"half a record")
+    other, known, cut = begin(tmp_path / "s", hand.hello)
+    assert cut is not None
+    assert "13 bytes" in cut
+    assert [touch.number for touch in known] == [touch.number for touch in session.fit.touches]
+    assert [touch.withdrawn for touch in known if touch.withdrawn] == ["the bar slipped"]
+    resumed = session_of(arm, hand, other)
+    resumed.go_on(known)
+    before, after = session.fit.so_far(), resumed.fit.so_far()
+    assert after.touches == before.touches
+    assert np.allclose(after.covariance, before.covariance, rtol=1e-9)
+    assert resumed.place == session.place
+    other.close()
+
+
+def test_what_is_no_touch_is_refused_with_its_reason() -> None:
+    arm, hand = hand_of(6)
+    session = session_of(arm, hand)
+    suggestion = session.meter().next
+    hand.follow(suggestion)
+    assert [type(event) for event in played(session)] == [Happened]
+    # asked for while the tip creeps
+    creep = np.outer(np.linspace(0.0, 3e-4, 900), np.eye(arm.n)[2])
+    hand.hold(0.9, creep)
+    assert played(session) == []
+    (refused,) = session.ask()
+    assert isinstance(refused, Refused)
+    assert "moved 0." in refused.reason
+    # the same posture again
+    hand.go(hand.q_rad + 0.02)  # type: ignore[operator]
+    hand.go(hand.q_rad - 0.02)  # type: ignore[operator]
+    hand.hold(0.9)
+    (again,) = played(session)
+    assert isinstance(again, Refused)
+    assert "same pose as touch 1" in again.reason
+    # a fault after which nobody knows the angles
+    hand.go(hand.q_rad + 0.3)  # type: ignore[operator]
+    hand.q_rad = hand.q_rad + 0.2  # type: ignore[operator]
+    hand.hold(0.9)
+    events = played(session)
+    assert [event.kind for event in events if isinstance(event, Fault)] == [JUMP]
+    assert any(isinstance(event, Refused) and "in doubt" in event.reason for event in events)
+    assert session.fit.so_far().touches == 1
+
+
+def test_a_joint_at_its_stop_is_refused() -> None:
+    arm, hand = hand_of(7)
+    travel = [tuple(each) for each in hand.travel_rad.tolist()]
+    joints = [replace(joint, limits_rad=each) for joint, each in zip(arm.joints, travel, strict=True)]
+    session = session_of(replace(arm, joints=joints), hand)
+    q_rad = hand.travel_rad.mean(axis=1)
+    q_rad[4] = hand.travel_rad[4, 1] - 1e-3
+    hand.go(q_rad)
+    hand.hold(0.9)
+    (refused,) = played(session)
+    assert isinstance(refused, Refused)
+    assert "joint 5 is at its stop" in refused.reason
+
+
+def test_a_ball_that_was_not_seated_stands_out() -> None:
+    arm, hand = hand_of(8)
+    session = session_of(arm, hand)
+    for number in range(24):
+        suggestion = session.meter().next
+        if number == 22 and hand.bar_mm is not None and suggestion.here:
+            hand.touch(hand.bar_mm[suggestion.feature] + np.array([0.5, 0.0, 0.3]), suggestion.q_rad)
+        else:
+            hand.follow(suggestion)
+        events = played(session)
+        for event in events:
+            if isinstance(event, Happened) and event.times is not None:
+                odd = event.times > 5.0
+                assert odd == (number == 22 and suggestion.here), (number, event)
