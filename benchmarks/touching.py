@@ -14,6 +14,7 @@ import argparse
 import os
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatch
@@ -118,10 +119,8 @@ def reached(seed: int, choice: Choice) -> tuple[int, int, float, float]:
         count += 1
         fit.add(Touch(count, case.spec.artefact.name, str(place), suggestion.feature, 0, read))
         if count >= 10:
-            try:
+            with suppress(ulna.UlnaInputError):  # too few for a fit
                 fit.refit()
-            except ulna.UlnaInputError:
-                pass  # too few for a fit
         so_far = fit.so_far()
     errors = fresh(case, fit.arm, guide)
     return count, len({touch.standing for touch in fit.touches}), 2.0 * u_mm, float(np.sqrt((errors**2).mean()))
@@ -143,7 +142,7 @@ def times_ms(count: int) -> dict[str, float]:
     case = Case.of(0)
     fit, guide = case.begun()
     assert case.spec.travel_rad is not None
-    place, so_far = 0, fit.so_far()
+    place = 0
     touches: list[Touch] = []
     while len(touches) < count + REPEATS:
         suggestion = guide.any_touch(case.rng, None, 6)
@@ -182,7 +181,7 @@ def page(arms: int) -> str:
     """Both tables."""
     timed = {count: times_ms(count) for count in COUNTS}
     lines = [
-        "| touches so far | one more: what is known, ms | best of 20 000 elsewhere, ms | and in place, ms | refit, ms |",
+        "| touches | one more: what is known, ms | best of 20 000 elsewhere, ms | and in place, ms | refit, ms |",
         "|---:|---:|---:|---:|---:|",
     ]
     lines += [
@@ -191,7 +190,7 @@ def page(arms: int) -> str:
     ]
     lines += [
         "",
-        f"| {arms} arms, to U(500 mm) = 40 µm | touches | of the first | places | U then, µm | rms of fresh bars, µm |",
+        f"| {arms} arms to U(500 mm) = 40 µm | touches | of these | places | U then, µm | rms of fresh |",
         "|---|---:|---:|---:|---:|---:|",
     ]
     ways: dict[str, Choice] = {

@@ -41,6 +41,7 @@ class Hand:
     noise_rad: float = 5e-6
     t_s: float = 100.0
     dwell_s: float = 0.9
+    move_s: float = 0.4
     bar_mm: F64 | None = None
     q_rad: F64 | None = None
     samples: deque[Samples] = field(default_factory=deque)
@@ -86,9 +87,9 @@ class Hand:
         self.hold(self.dwell_s)
         return True
 
-    def go(self, q_rad: F64, seconds: float = 0.4) -> None:
+    def go(self, q_rad: F64) -> None:
         begin = q_rad + 0.3 if self.q_rad is None else self.q_rad
-        count = int(seconds * self.rate_hz)
+        count = int(self.move_s * self.rate_hz)
         way = (1.0 - np.cos(np.linspace(0.0, np.pi, count)))[:, None] / 2.0
         self._send(begin + way * (q_rad - begin))
         self.q_rad = q_rad

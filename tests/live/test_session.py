@@ -78,7 +78,8 @@ def test_a_hand_that_follows_the_guide_reaches_the_goal(tmp_path: Path) -> None:
     rms = float(np.sqrt((length_errors(hand.truth, session.arm_now, session) ** 2).mean()))
     assert rms < 2.0 * meter.worth.u_mm
     # what is left: readings that calibrate to the same arm
-    study = write_study(session.fit, tmp_path / "evening")
+    study, left_out = write_study(session.fit, tmp_path / "evening")
+    assert left_out == []
     result = write_result(study)
     off = np.array(list(result.arm.core.parameters)) - session.arm_now.core.parameters
     assert np.abs(off).max() < 1e-6

@@ -5,9 +5,14 @@ The journal is there from the first touch on; a session that was interrupted goe
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from ulna.arm.file import arm_toml
+from ulna.artefacts.kinds import kind_of
+from ulna.artefacts.readings import InputFile, Readings
 from ulna.calibration.calibrate import calibrate
 from ulna.calibration.result import Result
 from ulna.formats.output import output_folder
@@ -48,8 +53,6 @@ def begin(folder: Path, hello: Hello, **head: object) -> tuple[Journal, list[Tou
 
 def touches_in(path: Path) -> list[Touch]:
     """The touches of a journal, the withdrawn ones with their reason. Raises UlnaInputError."""
-    from dataclasses import replace
-
     found: dict[int, Touch] = {}
     for record in Reading(path):
         if record.kind == TOUCH:
@@ -61,16 +64,39 @@ def touches_in(path: Path) -> list[Touch]:
     return list(found.values())
 
 
-def write_study(fit: RunningFit, folder: Path) -> Path:
-    """The touches that count as readings, with the arm where it began and the study that names both. Raises
+def write_study(fit: RunningFit, folder: Path) -> tuple[Path, list[str]]:
+    """The touches that count as readings, with the arm where it began and the study that names both; and what was left
+    out of it, in words: a place of a bar that was touched at one end alone is no reading of a bar. Raises
     UlnaInputError where there are none."""
     study = fit.study()
+    left_out: list[str] = []
+    groups = [_telling(group, folder, left_out) for group in study.readings]
+    study = replace(study, readings=[group for group in groups if len(group)])
     names = [name for name in names_for([group.artefact for group in study.readings]) if not name.startswith("truth")]
     with output_folder(folder, names, force=False) as staged:
         (staged / "arm.toml").write_text(arm_toml(study.arm), encoding="utf-8")
         (staged / "study.toml").write_text(study_toml(study, counts=False), encoding="utf-8")
         write_tables(study, None, staged)
-    return folder / "study.toml"
+    return folder / "study.toml", left_out
+
+
+def _telling(group: Readings, folder: Path, left_out: list[str]) -> Readings:
+    """Those places of which a study takes readings."""
+    kind, code = kind_of(group.artefact), group.placement_code
+    keep = np.ones(len(group), dtype=bool)
+    for standing in np.unique(code).tolist():
+        own = code == standing
+        try:
+            kind.check_readings(group.select(own), [InputFile(folder, "", 0)], folder)
+        except UlnaInputError:
+            keep &= ~own
+            numbers = ", ".join(group.select(own).id)  # type: ignore[arg-type]
+            place = group.select(own).placement[0]
+            left_out.append(
+                f"Place {place} of {group.artefact.name}: not all was touched there that makes a reading; the study "
+                f"does without touch {numbers}."
+            )
+    return group.select(keep)
 
 
 def write_result(study: Path) -> Result:

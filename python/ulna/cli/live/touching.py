@@ -103,7 +103,9 @@ def touch(
             "goes on with them."
         )
         return
-    study = write_study(session.fit, out)
+    study, left_out = write_study(session.fit, out)
+    for line in left_out:
+        output.say(line)
     result = write_result(study)
     if not as_json:
         from ulna.cli.printed.brief import brief_report
