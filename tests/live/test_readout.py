@@ -21,6 +21,7 @@ from tests.live.parts import in_thread, pty
 import ulna
 from ulna import Arm, UlnaInputError
 from ulna.arm.covariance import root_of
+from ulna.arm.effects.effects import Effects
 from ulna.arm.joint import Joint
 from ulna.cli.live.rounds import Round
 from ulna.cli.printed.readout import large, screen, summary
@@ -246,6 +247,19 @@ def test_what_is_wrong_with_the_stream_is_no_touch(result: Path, tmp_path: Path)
     assert "reset: " in done.stderr
     assert "not determined: the angles may be wrong" in done.stdout
     assert "Doubtful" in done.stdout
+    done = run("live", "measure", result, tmp_path / "source.toml", "--probe", "bent", "--still", "--json")
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [line["fault"]["kind"] for line in lines if "fault" in line] == ["reset"]
+    last = [line["tip"] for line in lines if "tip" in line][-1]
+    assert last["x"]["value"] is None
+    assert "the angles may be wrong" in last["x"]["not_determined"]
+    assert lines[-1]["end"] | {"ended": ""} == {
+        "samples": len(reset),
+        "faults": {"reset": 1, "ended": 1},
+        "doubtful": True,
+        "ended": "",
+        "points": 2,
+    }
 
 
 def test_features(result: Path, tmp_path: Path) -> None:
@@ -327,6 +341,20 @@ def test_touches_on_a_line_are_no_plane(result: Path) -> None:
     figures = arm.figures("plane", poses, "f1")
     assert all(figure.value is None for figure in figures)
     assert str(figures[0].why).startswith("plane: the 4 points are on a line")
+
+
+def test_what_no_stream_says_is_asked_for() -> None:
+    joint = Joint(a_mm=300.0, effects=Effects(backlash_rad=1e-4))
+    with pytest.raises(UlnaInputError, match=r"a stream does not say it\. Measure with `ulna measure`"):
+        Calibrated(Arm("loose", (joint, Joint(a_mm=300.0), Joint()), {"ball": BENT}))
+    warm = Arm(
+        "warm", (Joint(a_mm=300.0, effects=Effects(expansion_per_k=1e-5)), Joint(a_mm=300.0), Joint()), {"ball": BENT}
+    )
+    with pytest.raises(UlnaInputError, match=r"Give it with --temperature\."):
+        Calibrated(warm)
+    q_rad = np.array([0.1, 0.2, 0.3])
+    values = [figure.value for figure in Calibrated(warm, temperature_c=30.0).point(q_rad)]
+    assert values == warm.tip(q_rad, temperature_c=30.0).tolist() != warm.tip(q_rad, temperature_c=20.0).tolist()
 
 
 def test_near_a_stop_and_folded() -> None:
@@ -429,28 +457,35 @@ def test_keys_in_a_terminal(result: Path, tmp_path: Path) -> None:
     os.close(theirs)
     shown = b""
 
-    def until(text: str) -> None:
+    def until(*texts: str) -> None:
         nonlocal shown
         end = time.monotonic() + 40
-        while text.encode() not in shown:
+        while not any(text.encode() in shown for text in texts):
             assert time.monotonic() < end, shown[-2000:].decode()
             shown += os.read(ours, 1 << 16)
 
     try:
         until("still")
-        time.sleep(1.0)
-        for keys, answer in ((b" ", "p1 taken"), (b" ", "p2 taken"), (b"k", "f1 is a length"), (b"u", "p2 taken back")):
+        for name in ("p1", "p2"):
+            while f"{name} taken".encode() not in shown:
+                os.write(ours, b" ")
+                time.sleep(0.5)  # a refusal is shown until the next answer
+                until(f"{name} taken", "not taken: ")
+                shown = shown.replace(b"not taken: ", b"")
+        for keys, answer in ((b"k", "f1 is a length"), (b"u", " taken back")):
             os.write(ours, keys)
             until(answer)
         os.write(ours, b"nq")
         until("faults: ")
-        until("1 points.")
+        until(" points.")
         assert process.wait(timeout=20) == 0
     finally:
         process.kill()
         process.wait(timeout=20)
         os.close(ours)
-    assert len(csv.read_text().splitlines()) == 2
+    rows = csv.read_text().splitlines()
+    assert rows[1].startswith("p1,bent,")
+    assert f"{len(rows) - 1} points." in shown.decode(errors="replace")
 
 
 @pytest.mark.parametrize("columns", [60, 80])

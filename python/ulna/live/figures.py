@@ -80,6 +80,7 @@ class Calibrated:
         each = None if encoder_u_rad is None else np.full(self.arm.n, encoder_u_rad)
         self.noise: ReadingNoise = noise.stated(each)
         load = self.arm.loads_of(payload)
+        _check_said(self.arm, {"temperature_c": temperature_c, "payload": payload})
         self._said: dict[str, Any] = {"temperature_c": temperature_c, "payload": load}
         self.conditions = self.arm.conditions(1, **self._said)
         self._inside = inside
@@ -155,6 +156,17 @@ class Calibrated:
             Figure(each, unit, value, None, None)
             for (each, unit), value in zip(measurand.units.items(), values, strict=True)
         ]
+
+
+def _check_said(arm: Arm, said: dict[str, Any]) -> None:
+    """Raises UlnaInputError where the tip depends on a condition that neither a stream nor anybody says."""
+    for condition, effect in arm.needs.items():
+        if said.get(condition.said) is None:
+            remedy = f"Give it with {condition.option}." if condition.option else "Measure with `ulna measure`."
+            raise UlnaInputError(
+                f"arm '{arm.name}': its {effect.whose} {effect.does}, but {condition.missing}; a stream does not say "
+                f"it. {remedy}"
+            )
 
 
 def _known(given: ArmLike) -> tuple[Arm, ReadingNoise, F64 | None]:
