@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
-import time
-from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from rich.console import Console
-from tests.cli_runs import BENT, STRAIGHT, assert_bad_input, run, write_lengths
-from tests.live.parts import in_thread, pty
+from tests.cli_runs import BENT, STRAIGHT, assert_bad_input, run
+from tests.live.hands import DWELL, NOISE_RAD, RATE_HZ, TRAVEL, hand, near, source
 
 import ulna
 from ulna import Arm, UlnaInputError
@@ -33,51 +27,6 @@ from ulna.live.readout import ReadOut, Said, Set, Tip
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream, streaming
 from ulna.live.trigger import Refused
-
-NOISE_RAD = 5e-6
-RATE_HZ = 100.0
-DWELL, TRAVEL = 250, 60
-"""Samples."""
-
-
-@pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A calibration of probe bent; of probe straight nothing was measured."""
-    folder = tmp_path_factory.mktemp("calibrated")
-    probes = {"bent": BENT, "straight": STRAIGHT}
-    study = write_lengths(folder, probes=probes, noise=f"[noise]\nencoder = {NOISE_RAD}\nseat = 0.01\n")
-    done = run("calibrate", study, "-o", folder / "out")
-    assert done.returncode == 0, done.stderr
-    return folder / "out"
-
-
-def hand(poses: Sequence[F64], seed: int = 1, dwell: int = DWELL) -> F64:
-    """(N, n) what encoders read while a hand rests in each of the poses and travels in between."""
-    rows = [np.tile(poses[0], (dwell, 1))]
-    for before, after in pairwise(poses):
-        part = np.linspace(0.0, 1.0, TRAVEL)[:, None]
-        rows += [before + (after - before) * part, np.tile(after, (dwell, 1))]
-    q_rad = np.concatenate(rows)
-    return q_rad + np.random.default_rng(seed).normal(0.0, NOISE_RAD, q_rad.shape)
-
-
-def near(count: int, seed: int = 5) -> list[F64]:
-    """Poses a hand's breadth from each other."""
-    rng = np.random.default_rng(seed)
-    first = rng.uniform(-1.5, 1.5, 7)
-    return [first + rng.normal(0.0, 0.05, 7) for _ in range(count)]
-
-
-def source(folder: Path, q_rad: F64, speed: str = "max") -> Path:
-    """A source file of a recording."""
-    names = ",".join(f"q{k + 1}" for k in range(q_rad.shape[1]))
-    rows = "\n".join(",".join(map(repr, row)) for row in q_rad.tolist())
-    (folder / "run.csv").write_text(f"{names}\n{rows}\n")
-    path = folder / "source.toml"
-    path.write_text(
-        f'format = "ulna-source/1"\nurl = "file:{folder}/run.csv?speed={speed}&rate={RATE_HZ:g}"\n[map]\nunit = "rad"\n'
-    )
-    return path
 
 
 def read(stream: Stream, out: ReadOut, tips: bool = False) -> list[Said]:
@@ -369,123 +318,6 @@ def test_near_a_stop_and_folded() -> None:
     assert "(0.00, 0.00, 1.00)" in text.replace("-", "")
     bent = Arm("bent", (*joints[1:2], *joints[1:]), {"ball": BENT})
     assert folded(Calibrated(bent), np.array([0.3, 1.2, 0.7, 0.9])) == []
-
-
-def test_programs_get_lines_of_json(result: Path, tmp_path: Path) -> None:
-    file, csv = source(tmp_path, hand(near(4))), tmp_path / "points.csv"
-    words = ["live", "measure", result, file, "--probe", "bent", "--still", "--json", "-o", csv]
-    done = run(*words, "--feature", "length p1 p3", "--to", "p1")
-    assert done.returncode == 0, done.stderr
-    lines = [json.loads(line) for line in done.stdout.splitlines()]
-    kinds = [next(iter(line)) for line in lines]
-    assert set(kinds) == {"note", "tip", "taken", "feature", "end"}
-    taken = [line["taken"] for line in lines if "taken" in line]
-    assert [each["name"] for each in taken] == ["p1", "p2", "p3", "p4"]
-    assert {line["tip"]["distance"]["to"] for line in lines if "distance" in line.get("tip", {})} == {"p1"}
-    assert lines[-1]["end"]["points"] == 4
-    length = ulna.measure(result, np.array([each["q_rad"] for each in taken]), "bent").length(0, 2)
-    named = [line["feature"] for line in lines if line.get("feature", {}).get("name") == "length p1 p3"]
-    assert named[0]["length"]["value"] == pytest.approx(length.value_mm)
-    assert named[0]["length"]["expanded"] == pytest.approx(2.0 * (length.u_mm or 0.0))
-    # the table is one that `ulna measure` reads, and comes to the same
-    with pytest.warns(ulna.InputWarning, match="not used: the columns x, y, z"):
-        again = ulna.measure(result, csv)
-    assert again.table is not None
-    assert again.table["id"].to_list() == ["p1", "p2", "p3", "p4"]
-    np.testing.assert_allclose(again.table["u_x"].to_list(), [each["x"]["u"] for each in taken], rtol=1e-9)
-    assert_bad_input(run(*words), "points.csv: exists already")
-    assert run(*words, "--force").returncode == 0
-
-
-def test_what_was_asked_wrongly_is_one_sentence(result: Path, tmp_path: Path) -> None:
-    file = source(tmp_path, hand(near(1)))
-    assert_bad_input(run("live", "measure", result, file, "--probe", "bend"), "Did you mean 'bent'?")
-    assert_bad_input(run("live", "measure", result, file, "-o", file, "--force"), ".toml")
-    csv = tmp_path / "run.csv"
-    assert_bad_input(run("live", "measure", result, file, "--probe", "bent", "-o", csv, "--force"), "is an input")
-    few = source(tmp_path, hand([near(1)[0][:6]]))
-    assert_bad_input(run("live", "measure", result, few, "--probe", "bent"), "6 channels", "7 joints")
-    for texts, expected in (
-        (["bal"], "Did you mean 'ball'?"),
-        (["length p1"], "1 points; expected 2 of a length"),
-        (["plane p1 p2"], "expected 3 or more of a plane"),
-        (["length p1 x2"], "got 'x2'"),
-        (["length p1 p1"], "twice"),
-        (["ball", "plane"], "ball and plane"),
-        ([""], "got ''"),
-    ):
-        with pytest.raises(UlnaInputError) as caught:
-            asked_for(texts)
-        assert expected in str(caught.value)
-
-
-def test_from_a_serial_line(result: Path) -> None:
-    q_rad = hand(near(2))
-    with pty() as line:
-        toml = result.parent / "line.toml"
-        toml.write_text(
-            f'format = "ulna-source/1"\nurl = "serial:{line.path}?wait=30"\n[map]\nunit = "rad"\n'
-            '[decode]\nkind = "fields"\ntime = "ms"\nnames = ["ms", "q1", "q2", "q3", "q4", "q5", "q6", "q7"]\n'
-        )
-        process = _started("live", "measure", result, toml, "--probe", "bent", "--still", "--json")
-
-        def send() -> None:
-            for k, row in enumerate(q_rad.tolist()):
-                line.send(f"{10 * k},{','.join(map(repr, row))}\n".encode())
-                time.sleep(0.005)
-            line.pull()
-
-        with in_thread(send):
-            out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, err
-    taken = [json.loads(each)["taken"] for each in out.splitlines() if each.startswith('{"taken"')]
-    assert [each["name"] for each in taken] == ["p1", "p2"]
-    assert np.abs(np.array([each["q_rad"] for each in taken]) - near(2)).max() < NOISE_RAD
-
-
-def _started(*words: str | Path, **how: Any) -> subprocess.Popen[str]:
-    how = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | how
-    return subprocess.Popen([sys.executable, "-m", "ulna", *map(str, words)], env=os.environ | {"TERM": "xterm"}, **how)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are POSIX's")
-def test_keys_in_a_terminal(result: Path, tmp_path: Path) -> None:
-    file, csv = source(tmp_path, hand(near(1), dwell=6000), speed="1"), tmp_path / "points.csv"
-    ours, theirs = os.openpty()
-    words = ("live", "measure", result, file, "--probe", "bent", "-o", csv)
-    process = _started(*words, stdin=theirs, stdout=theirs, stderr=theirs, text=False)
-    os.close(theirs)
-    shown = b""
-
-    def until(*texts: str) -> None:
-        nonlocal shown
-        end = time.monotonic() + 40
-        while not any(text.encode() in shown for text in texts):
-            assert time.monotonic() < end, shown[-2000:].decode()
-            shown += os.read(ours, 1 << 16)
-
-    try:
-        until("still")
-        for name in ("p1", "p2"):
-            while f"{name} taken".encode() not in shown:
-                os.write(ours, b" ")
-                time.sleep(0.5)  # a refusal is shown until the next answer
-                until(f"{name} taken", "not taken: ")
-                shown = shown.replace(b"not taken: ", b"")
-        for keys, answer in ((b"k", "f1 is a length"), (b"u", " taken back")):
-            os.write(ours, keys)
-            until(answer)
-        os.write(ours, b"nq")
-        until("faults: ")
-        until(" points.")
-        assert process.wait(timeout=20) == 0
-    finally:
-        process.kill()
-        process.wait(timeout=20)
-        os.close(ours)
-    rows = csv.read_text().splitlines()
-    assert rows[1].startswith("p1,bent,")
-    assert f"{len(rows) - 1} points." in shown.decode(errors="replace")
 
 
 @pytest.mark.parametrize("columns", [60, 80])

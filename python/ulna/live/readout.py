@@ -223,7 +223,9 @@ class ReadOut:
     def _tip(self, window: Window) -> Tip:
         t_s, q_rad = float(window.t_s[-1]), window.q_rad[-1]
         rest = None
-        if self._trigger is not None and self._tells and len(window.t_s) >= LEAST_SAMPLES:
+        # as long as a touch needs to be
+        whole = self.limits is not None and window.t_s[-1] - window.t_s[0] >= self.limits.window_s * (1.0 - 1e-9)
+        if self._trigger is not None and self._tells and whole:
             times, _, p_mm, covariance = self._places(window)
             rest = stillness(times, p_mm, covariance, self._trigger.limits)
         figures = tuple(self.arm.point(q_rad, "the tip"))

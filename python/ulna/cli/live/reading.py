@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -181,7 +182,7 @@ def _on_screen(reading: Reading, source: str, seconds: float | None) -> Round:
 
         def each(known: Round, frames: Frames) -> None:
             out = reading.of(known)
-            for said in [*out.take(frames), *reading.press(keys())]:
+            for said in chain(out.take(frames), reading.press(keys())):  # one by one, so that the last answer stays
                 reading.said = f"not taken: {said.reason}" if isinstance(said, Refused) else _taken(said)
                 if isinstance(said, Set):
                     live.console.bell()

@@ -109,8 +109,14 @@ def tip_line(tip: Tip) -> str:
     if tip.stillness is not None:
         parts.append("still" if tip.stillness.still else "moving")
     if tip.distance is not None:
-        parts.append(f"to {tip.to} {in_line([tip.distance])}")
+        parts.append(_apart(tip))
     return "; ".join([*parts, *tip.warnings])
+
+
+def _apart(tip: Tip) -> str:
+    """How far it is from the point that was named."""
+    assert tip.distance is not None
+    return f"to {tip.to}: {in_line([tip.distance]).removeprefix(f'{tip.distance.name} ')}"
 
 
 def notes(out: ReadOut) -> list[str]:
@@ -140,7 +146,7 @@ def screen(out: ReadOut, known: Round, said: str, keys: bool, blocks: bool = Tru
     else:
         parts += _place(tip, blocks)
         if tip.distance is not None:
-            parts.append(Text(f"to {tip.to}: {in_line([tip.distance])}"))
+            parts.append(Text(_apart(tip)))
         parts += [Text(f"! {warning}", style="bold") for warning in tip.warnings]
     parts += [_one(point_line(point)) for point in out.notebook.points[-_POINTS:]]
     # a reason is told whole at the tip, and at the end
