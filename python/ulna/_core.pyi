@@ -371,14 +371,9 @@ def choose(
 class Running:
     """What is known while readings still come: rows that are added and taken away, none started over."""
 
-    def __init__(
-        self,
-        problem: Problem,
-        hold: Bool,  # (P,)
-        parameters: F64 | None = None,  # (P,) from where the readings are looked at; None: the problem's own
-        sigma: float | None = None,  # of a whitened residual, as a fit of this problem showed it; None: before a fit
-    ) -> None:
-        """Leaf k holds the readings of the standing that `rows_of_fit` numbers k."""
+    def __init__(self, problem: Problem, hold: Bool, parameters: F64 | None = None, sigma: float | None = None) -> None:
+        """Looked at from parameters (P,), None: the problem's own; sigma: of a whitened residual, as a fit of this
+        problem showed it. Leaf k holds the readings of the standing that `rows_of_fit` numbers k."""
     @property
     def leaves(self) -> int:
         """How many there are, with the empty ones."""

@@ -38,6 +38,7 @@ COMMANDS = {
     "import urdf": "import urdf arm.urdf -o {out}.toml",
     "export urdf": "export urdf done -o {out}.urdf",
     "export dh": "export dh done -o {out}.csv",
+    "live measure": "live measure done rest.toml --still -o {out}.csv",
 }
 
 #: a process in which the commands run one after the other, under a limit for the size of files or none
@@ -72,6 +73,14 @@ placements = 30
 length = 443.172
 """
 
+#: a hand that rests
+REST = """
+format = "ulna-source/1"
+url = "file:rest.csv?speed=max"
+[map]
+unit = "rad"
+"""
+
 
 def run_all(folder: Path, out: str, limit: int = 0) -> dict[str, tuple[int, str]]:
     """Of each command its exit code and what it said on stderr."""
@@ -101,6 +110,8 @@ def bench(tmp_path_factory: pytest.TempPathFactory, root: Path) -> Path:
         if study.name not in ("study.toml", "platinum.toml"):
             study.unlink()
     (folder / "simulation.toml").write_text(SIMULATION)
+    (folder / "rest.toml").write_text(REST)
+    (folder / "rest.csv").write_text("q1,q2,q3,q4,q5,q6,q7\n" + 500 * "0.1,0.2,0.3,0.4,0.5,0.6,0.7\n")
     prepared = [
         "calibrate study.toml -o done",
         "export urdf platinum.toml -o arm.urdf",

@@ -1,4 +1,4 @@
-"""Real parts: a broker started for the tests."""
+"""Real parts: a broker started for the tests; and a calibrated arm."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.cli_runs import BENT, STRAIGHT, run, write_lengths
+from tests.live.hands import NOISE_RAD
 from tests.real_parts import lacking
 
 
@@ -58,3 +60,14 @@ def broker(tmp_path: Path) -> Iterator[Broker]:
         yield started
     finally:
         started.stop()
+
+
+@pytest.fixture(scope="session")
+def result(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A calibration of probe bent; of probe straight nothing was measured."""
+    folder = tmp_path_factory.mktemp("calibrated")
+    probes = {"bent": BENT, "straight": STRAIGHT}
+    study = write_lengths(folder, probes=probes, noise=f"[noise]\nencoder = {NOISE_RAD}\nseat = 0.01\n")
+    done = run("calibrate", study, "-o", folder / "out")
+    assert done.returncode == 0, done.stderr
+    return folder / "out"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.live.hands import Hand, off_its_drawing, platinum_plan
+from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 
 import ulna
 from ulna.live.ending import JOURNAL, begin, touches_in, write_result, write_study
@@ -88,8 +88,10 @@ def test_a_hand_that_follows_the_guide_reaches_the_goal(tmp_path: Path) -> None:
         begin(tmp_path / "evening", hand.hello)
 
 
-def test_the_same_stream_gives_the_same_touches_however_it_comes(tmp_path: Path) -> None:
+@pytest.mark.parametrize("says_rate", [True, False])
+def test_the_same_stream_gives_the_same_touches_however_it_comes(tmp_path: Path, says_rate: bool) -> None:
     arm, hand = hand_of(4)
+    hand.says_rate = says_rate
     with Journal.create(tmp_path / "whole.journal", hand.hello) as journal:
         session = session_of(arm, hand, journal, keep_all=True)
         for _ in range(6):
@@ -98,7 +100,7 @@ def test_the_same_stream_gives_the_same_touches_however_it_comes(tmp_path: Path)
     first = session.fit.touches
     assert len(first) == 6
     for size in (1, 17, 5000):
-        again = Hand(hand.truth, hand.spec, hand.travel_rad, np.random.default_rng(0))
+        again = Hand(hand.truth, hand.spec, hand.travel_rad, np.random.default_rng(0), says_rate=says_rate)
         for record in Reading(tmp_path / "whole.journal"):
             if record.kind == SAMPLES:
                 again.samples.extend(record.content[k : k + size] for k in range(0, len(record.content), size))

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.live.hands import Hand, off_its_drawing, platinum_plan
+from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 
 import ulna
 from ulna.live.ending import JOURNAL, touches_in

@@ -45,7 +45,7 @@ class Recent:
         """Samples newer than all that are here, and the windows that end among them."""
         if not len(samples):
             return
-        t_s = samples.t_host_s if samples.t_device_s is None else samples.t_device_s
+        t_s = samples.t_s
         down = np.zeros(len(t_s), dtype=bool) if samples.button is None else samples.button
         if len(self._t_s) and t_s[0] < self._t_s[-1]:
             # a clock that went back: what was before is of another time

@@ -43,6 +43,11 @@ class Samples:
     def __len__(self) -> int:
         return len(self.t_host_s)
 
+    @property
+    def t_s(self) -> F64:
+        """(N,) by the device's clock where it sends one, else by ours."""
+        return self.t_host_s if self.t_device_s is None else self.t_device_s
+
     @classmethod
     def none(cls, channels: int) -> Samples:
         """No sample."""

@@ -23,9 +23,9 @@ from ulna.live.places import tell
 from ulna.live.recent import Recent, Window
 from ulna.live.ring import Ring
 from ulna.live.running import RunningFit, SoFar
+from ulna.live.samples import Samples
 from ulna.live.still import StillLimits, stillness
 from ulna.live.stream import Frames, Stream
-from ulna.live.tables import StillTable
 from ulna.live.touches import Touch, tips
 from ulna.live.trigger import Refused, Taken, Trigger, same_pose
 from ulna.planning.spec import PlanSpec
@@ -33,6 +33,8 @@ from ulna.study.data import FitOptions, Noise
 
 AROUND_S = 1.0
 """Of the stream around each touch that its journal keeps."""
+RATE_S = 1.0
+"""Of a stream that does not say its rate, so much is looked at."""
 REFIT_TO = 500
 """Touches up to which the arm is fitted after each; with more after every tenth."""
 SUSPICIOUS = 5.0
@@ -108,6 +110,8 @@ class Session:
         self._suggestion: Suggestion | None = None
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
         self._recent: Recent | None = None
+        self._early: list[tuple[Samples, F64]] = []
+        """What came before the rate was known."""
         self._trigger: Trigger | None = None
         self._covariance_mm2: F64 = np.eye(3)
         self.window: Window | None = None
@@ -129,10 +133,19 @@ class Session:
         if self.keep_all and self.journal is not None:
             self.journal.samples(samples)
         self._ring.push(samples)
-        recent = self._begin(frames)
-        for window in recent.push(samples, frames.q_rad):
-            self.window = window
-            yield from self._look(window)
+        if self._recent is None:
+            self._early.append((samples, frames.q_rad))
+            rate_hz = self._rate_hz()
+            if rate_hz is None:
+                return
+            recent = self._begin(frames, rate_hz)
+            waiting, self._early = self._early, []
+        else:
+            recent, waiting = self._recent, [(samples, frames.q_rad)]
+        for some, q_rad in waiting:
+            for window in recent.push(some, q_rad):
+                self.window = window
+                yield from self._look(window)
 
     def ask(self) -> Iterator[Event]:
         """A touch now, by a key or a pedal."""
@@ -207,17 +220,24 @@ class Session:
 
     # ------------------------------------------------------------ inside
 
-    def _begin(self, frames: Frames) -> Recent:
-        """Limits for this stream's rate and noise, once both are known."""
-        if self._recent is not None:
-            return self._recent
+    def _rate_hz(self) -> float | None:
+        """As the source says, or as its first second shows; None until then. By the samples' own times: the same
+        however they came in."""
+        stated = self.stream.source.hello.rate_hz
+        if stated:
+            return stated
+        t_s = np.concatenate([samples.t_s for samples, _ in self._early])
+        over = np.flatnonzero(t_s - t_s[0] >= RATE_S)
+        return None if not len(over) else float(over[0] / (t_s[over[0]] - t_s[0]))
+
+    def _begin(self, frames: Frames, rate_hz: float) -> Recent:
+        """Limits for this stream's rate and noise."""
         q_rad = frames.q_rad[-1]
         jacobian = self.arm.core.encoder_jacobian(np.ascontiguousarray(q_rad[None]), self._probe)[0]
         covariance = (jacobian * self.spec.encoder_rad**2) @ jacobian.T
         noise_mm = float(np.sqrt(max(np.trace(covariance) / 3.0, 0.0)))
-        hello = self.stream.source.hello
-        rate_hz = hello.rate_hz or (1.0 / self.stream.plausible.period_s if self.stream.plausible.period_s else 100.0)
-        limits = _stated(StillLimits.of(noise_mm, rate_hz, self.spec.seat_mm), self.stream.stated.file.still, rate_hz)
+        limits = StillLimits.of(noise_mm, rate_hz, self.spec.seat_mm)
+        limits = limits.stated_by(self.stream.stated.file.still, rate_hz)
         # an endless joint has no stop
         stops = [joint.limits_rad or (np.nan, np.nan) for joint in self.arm.joints]
         self._trigger = Trigger(limits, np.array(stops, dtype=np.float64), self.by_itself)
@@ -345,12 +365,3 @@ def as_dict(touch: Touch) -> dict[str, Any]:
 def from_dict(record: dict[str, Any]) -> Touch:
     """What `as_dict` made."""
     return Touch(**{**record, "q_rad": np.array(record["q_rad"], dtype=np.float64)})
-
-
-def _stated(limits: StillLimits, table: StillTable, rate_hz: float) -> StillLimits:
-    """What a source file says wins."""
-    if table.seconds is not None:
-        limits = limits.lasting(table.seconds, rate_hz)
-    if table.drift is not None:
-        limits = replace(limits, drift_mm=table.drift, drift_stated=True)
-    return replace(limits, spread_mm=table.spread, rearm_mm=table.rearm)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.live.tables import StillTable
 
 SLOWEST_MM_S = 0.02
 """A hand that creeps no faster than this cannot be told from one that rests, in the time that a person waits."""
@@ -73,6 +74,13 @@ class StillLimits:
         """The same over another time."""
         count = max(LEAST_SAMPLES, int(window_s * rate_hz) + 1)
         return replace(self, window_s=window_s, samples=count, spread=_most_spread(count))
+
+    def stated_by(self, table: StillTable, rate_hz: float) -> StillLimits:
+        """What a source file says of it wins."""
+        limits = self if table.seconds is None else self.lasting(table.seconds, rate_hz)
+        if table.drift is not None:
+            limits = replace(limits, drift_mm=table.drift, drift_stated=True)
+        return replace(limits, spread_mm=table.spread, rearm_mm=table.rearm)
 
     def _sees(self, noise_mm: float, rate_hz: float) -> bool:
         if noise_mm <= 0.0:

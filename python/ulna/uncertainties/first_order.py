@@ -58,7 +58,7 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
             f"{task.label}: A and B are in the same place; expected two places, a length of nothing has no direction. "
             "Correct the readings."
         )
-    gradient = _gradient(task, tips_mm)
+    gradient = gradient_of(task, tips_mm)
     by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, **task.said()))
     sources = {"parameters": propagate(by_parameter, known.over(arm.parameter_names))}
     noise = task.noise
@@ -99,8 +99,9 @@ def _open(arm: Arm, by_parameter: F64, moves: F64) -> list[list[int]]:
     return found
 
 
-def _gradient(task: Task, tips_mm: F64) -> F64:
-    """Raises UlnaInputError where the touches do not say what is asked of them: all on a line, say, of a plane."""
+def gradient_of(task: Task, tips_mm: F64) -> F64:
+    """(values, N, 3): ∂value/∂coordinate of each touch, (N, 3). Raises UlnaInputError where the touches do not say what
+    is asked of them: all on a line, say, of a plane."""
     try:
         gradient = task.touched.gradient(tips_mm)
         largest = float(np.abs(gradient).max())

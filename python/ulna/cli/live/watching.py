@@ -20,14 +20,22 @@ LINES_HZ = 1.0
 
 
 def go_round(
-    source: str, seconds: float | None, each: Callable[[Round, Frames], None], tick: Callable[[Round], None], hz: float
+    source: str,
+    seconds: float | None,
+    each: Callable[[Round, Frames], None],
+    tick: Callable[[Round], None],
+    hz: float,
+    *,
+    angles: bool = False,
+    ended: Callable[[], bool] = lambda: False,
 ) -> Round:
-    """Reads a source until it ends, the time is over, or Ctrl-C; `tick` is called hz times a second."""
-    with streaming(source, angles=False) as stream:
+    """Reads a source until it ends, the time is over, `ended`, or Ctrl-C; `tick` is called hz times a second. angles:
+    whether they are needed, or what was sent is enough."""
+    with streaming(source, angles) as stream:
         known = Round(stream)
         begin = shown = time.monotonic()
         with asked_to_end() as asked:  # Ctrl-C is the one way to end it, and a good one
-            while not asked.is_set() and (seconds is None or time.monotonic() - begin < seconds):
+            while not (asked.is_set() or ended()) and (seconds is None or time.monotonic() - begin < seconds):
                 try:
                     frames = stream.read(1.0 / FRAMES_HZ)
                 except SourceEnded as ended:
