@@ -39,6 +39,8 @@ COMMANDS = {
     "export urdf": "export urdf done -o {out}.urdf",
     "export dh": "export dh done -o {out}.csv",
     "live measure": "live measure done rest.toml --still -o {out}.csv",
+    "live commission": "live commission virtual:?poses=poses.csv&speed=max&rate=100&hand=4 --joints 7 --yes "
+    "--signs unknown -o {out}",
 }
 
 #: a process in which the commands run one after the other, under a limit for the size of files or none
@@ -99,6 +101,14 @@ def run_all(folder: Path, out: str, limit: int = 0) -> dict[str, tuple[int, str]
     return {name: (code, text) for name, (code, text) in json.loads(done.stdout).items()}
 
 
+def one_after_the_other(joints: int) -> str:
+    """Postures of an arm that is held still, then turned joint by joint."""
+    rows = [[0.0] * joints] * 5
+    for k in range(joints):
+        rows += [[angle * (j == k) for j in range(joints)] for angle in (-1.2, 1.1, 0.0, 0.0, 0.0)]
+    return "\n".join([",".join(f"q{k + 1}" for k in range(joints)), *(",".join(map(str, row)) for row in rows)]) + "\n"
+
+
 @pytest.fixture(scope="module")
 def bench(tmp_path_factory: pytest.TempPathFactory, root: Path) -> Path:
     """A folder in which every command has what it reads."""
@@ -112,6 +122,7 @@ def bench(tmp_path_factory: pytest.TempPathFactory, root: Path) -> Path:
     (folder / "simulation.toml").write_text(SIMULATION)
     (folder / "rest.toml").write_text(REST)
     (folder / "rest.csv").write_text("q1,q2,q3,q4,q5,q6,q7\n" + 500 * "0.1,0.2,0.3,0.4,0.5,0.6,0.7\n")
+    (folder / "poses.csv").write_text(one_after_the_other(7))
     prepared = [
         "calibrate study.toml -o done",
         "export urdf platinum.toml -o arm.urdf",

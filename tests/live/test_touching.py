@@ -21,6 +21,7 @@ from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 
 import ulna
 from ulna.live.ending import JOURNAL, touches_in
+from ulna.live.journal import TOUCH, Reading
 
 SOURCE = """\
 format = "ulna-source/1"
@@ -159,6 +160,42 @@ def test_a_program_follows_the_guide_is_killed_goes_on_and_has_an_arm(tmp_path: 
     found, true = (arm.core.tip(q_rad, 0) for arm in (result.arm, hand.truth))
     apart = [np.linalg.norm(each[1::2] - each[::2], axis=1) for each in (found, true)]
     assert np.sqrt(((apart[0] - apart[1]) ** 2).mean()) < 0.1
+
+
+FULL = """
+import resource, signal, sys
+import numpy as np
+from ulna.ground.errors import UlnaInputError
+from ulna.live.journal import Journal
+from ulna.live.samples import Hello, Samples
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+journal = Journal.create(sys.argv[1], Hello(("q1",), "rad", "a test"))
+noise = np.random.default_rng(0).random((500, 1))
+try:
+    for k in range(50):
+        journal.samples(Samples(np.arange(500.0), None, noise))
+        journal.touch({"number": k})
+except UlnaInputError as error:
+    print(k, error)
+try:
+    journal.close()
+except UlnaInputError:
+    print("told again")
+"""
+
+
+def test_a_disk_that_is_full_is_told_and_what_was_acknowledged_is_there(tmp_path: Path) -> None:
+    path = tmp_path / "full.journal"
+    done = subprocess.run([sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    told = done.stdout.splitlines()[0]
+    assert str(path) in told
+    acknowledged = int(told.split()[0])
+    assert acknowledged > 0
+    reading = Reading(path)
+    assert sum(record.kind == TOUCH for record in reading) >= acknowledged
+    assert reading.cut is not None
 
 
 @pytest.mark.timeout(120)

@@ -196,7 +196,7 @@ def _is_number(value: Any) -> bool:
 def _judged(kind: str, reasons: list[str], fields: list[Field], decode: dict[str, Any], t_host_s: F64) -> Proposal:
     """What each field is, and the unit of the channels."""
     for each in fields:
-        each.role, each.why = _role(each.values, t_host_s)
+        each.role, each.why = role_of(each.values, t_host_s)
     clock = next((each for each in fields if each.role == "clock"), None)
     button = next((each for each in fields if each.role == "button"), None)
     channels = [each for each in fields if each.role == "channel"]
@@ -217,7 +217,7 @@ def _judged(kind: str, reasons: list[str], fields: list[Field], decode: dict[str
     return Proposal(kind, reasons, fields, decode, mapped)
 
 
-def _role(values: F64, t_host_s: F64) -> tuple[str, str]:
+def role_of(values: F64, t_host_s: F64) -> tuple[str, str]:
     """What a field is, and why; a clock's reason begins with its unit."""
     steps = np.diff(values)
     took_s = float(t_host_s[-1] - t_host_s[0]) if len(t_host_s) else 0.0
@@ -242,8 +242,12 @@ def _unit(channels: list[F64]) -> tuple[str | None, str, float | None]:
     if not channels:
         return None, "No channel of angles was found.", None
     every = np.concatenate(channels)
-    size = float(np.abs(every).max())
-    if (every == np.round(every)).all():
+    return unit_of(bool((every == np.round(every)).all()), float(np.abs(every).max()))
+
+
+def unit_of(whole: bool, size: float) -> tuple[str | None, str, float | None]:
+    """deg, rad or counts of numbers up to a size, why, and counts per turn; whole: whether all are whole numbers."""
+    if whole:
         if size <= 1.0:
             return None, "All numbers are 0 or 1: turn the arm to see what they are.", None
         turn = next((float(each) for each in TURNS if size < each), None)

@@ -13,6 +13,7 @@ import struct
 import time
 import zlib
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -21,6 +22,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from ulna.formats.output import unwritable
 from ulna.ground.errors import UlnaInputError
 from ulna.live.samples import MOST_CHANNELS, Hello, Samples
 
@@ -106,7 +108,8 @@ class Journal:
         except OSError as error:
             raise UlnaInputError(f"{path}: cannot be written ({error.strerror}). Choose another place.") from None
         journal = cls(stream, path)
-        stream.write(MAGIC)
+        with journal._on_disk():
+            stream.write(MAGIC)
         described = {
             "channels": list(hello.channels),
             "unit": hello.unit,
@@ -158,7 +161,16 @@ class Journal:
         self._pack()
         self._write(kind, _json(content))
         self.flush()
-        os.fsync(self._stream.fileno())
+        with self._on_disk():
+            os.fsync(self._stream.fileno())
+
+    @contextmanager
+    def _on_disk(self) -> Iterator[None]:
+        """Raises UlnaInputError where the disk takes no more: what was written stays, and goes on from there."""
+        try:
+            yield
+        except OSError as error:
+            raise unwritable(self.path, error) from None
 
     def _pack(self) -> None:
         """Consecutive samples of one shape as one block."""
@@ -178,20 +190,27 @@ class Journal:
                 f"{self.path}: a record of more than {MOST_BYTES >> 20} MB; expected less. Write less."
             )
         checksum = zlib.crc32(content, zlib.crc32(bytes([kind])))
-        self._stream.write(_RECORD.pack(len(content), kind, checksum) + content)
+        with self._on_disk():
+            self._stream.write(_RECORD.pack(len(content), kind, checksum) + content)
 
     def flush(self) -> None:
         """All that was appended goes to the system."""
         self._pack()
-        self._stream.flush()
+        with self._on_disk():
+            self._stream.flush()
         self._written_s = time.monotonic()
 
     def close(self) -> None:
         """All that was appended goes to the disk."""
-        if not self._stream.closed:
+        if self._stream.closed:
+            return
+        try:
             self.flush()
-            os.fsync(self._stream.fileno())
-            self._stream.close()
+            with self._on_disk():
+                os.fsync(self._stream.fileno())
+        finally:
+            with suppress(OSError):  # it was told already
+                self._stream.close()
 
     def __enter__(self) -> Journal:
         return self

@@ -55,6 +55,9 @@ KINDS: dict[str, Kind] = {
         bytes=False,
     ),
     "file": Kind("ulna.live.sources.file", "file:run.journal?speed=10", "a recording, or a CSV file", bytes=False),
+    "virtual": Kind(
+        "ulna.live.sources.virtual", "virtual:arm.toml?rate=1000", "a virtual arm that moves by itself", bytes=False
+    ),
 }
 """Scheme → kind."""
 

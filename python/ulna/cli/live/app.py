@@ -7,7 +7,7 @@ from typing import Any
 import typer
 
 from ulna.cli.help import Command, Group
-from ulna.cli.live import looking, measuring, recording, touching
+from ulna.cli.live import commission, looking, measuring, recording, touching
 
 app = typer.Typer(
     cls=Group,
@@ -19,7 +19,13 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-TOPICS: tuple[dict[str, Any], ...] = (looking.COMMANDS, touching.COMMANDS, measuring.COMMANDS, recording.COMMANDS)
+TOPICS: tuple[dict[str, Any], ...] = (
+    looking.COMMANDS,
+    commission.COMMANDS,
+    touching.COMMANDS,
+    measuring.COMMANDS,
+    recording.COMMANDS,
+)
 for topic in TOPICS:
     for name, function in topic.items():
         app.command(name, cls=Command)(function)

@@ -1,0 +1,144 @@
+"""What was found as files: the source, the arm, and the noise to paste; whole or not at all."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from urllib.parse import quote, unquote
+
+from ulna.arm.arm import Arm
+from ulna.arm.file import arm_toml
+from ulna.formats.output import output_folder, refuse_inputs
+from ulna.formats.toml_text import toml_key, toml_value
+from ulna.live.commission.findings import Findings
+from ulna.live.mapping import TURN
+from ulna.live.source_file import StatedSource, load_source
+from ulna.proposals.arms import Drawn
+
+FILES = ("source.toml", "arm.toml", "noise.toml")
+_PATHS = ("file", "bag", "virtual")
+"""Urls that begin with a path."""
+
+
+def write(findings: Findings, stated: StatedSource, base: Drawn, folder: Path, force: bool = False) -> None:
+    """source.toml, arm.toml and noise.toml into a folder. base: the geometry.
+
+    Raises UlnaInputError where they exist and `force` is not given, or where something is not known that they need.
+    """
+    findings.check()
+    refuse_inputs((folder / name for name in FILES), [stated.path, *base.files])
+    with output_folder(folder, FILES, force) as staging:
+        (staging / "source.toml").write_text(source_text(findings, stated, folder), encoding="utf-8")
+        (staging / "arm.toml").write_text(arm_text(findings, base), encoding="utf-8")
+        (staging / "noise.toml").write_text(noise_text(findings), encoding="utf-8")
+        load_source(staging / "source.toml")
+        Arm.load(staging / "arm.toml")
+
+
+def source_text(findings: Findings, stated: StatedSource, folder: Path) -> str:
+    """A source file, to stand in a folder."""
+    file = stated.file
+    mapped: dict[str, object] = {
+        "channels": [joint.channel for joint in findings.joints],
+        "unit": findings.unit,
+    }
+    if findings.unit not in TURN:
+        each = [_whole(joint.counts_per_turn) for joint in findings.joints]
+        mapped["counts_per_turn"] = each[0] if len(set(each)) == 1 else each
+    if not file.map.wraps:
+        mapped["wraps"] = False
+    lines = [
+        _comment("Written by ulna live commission: the channels of q1, q2, … from the base to the probe."),
+        'format = "ulna-source/1"',
+        f"url = {toml_value(_from(stated, folder))}",
+    ]
+    tables = {
+        "decode": None if file.decode is None else file.decode.model_dump(mode="json", exclude_none=True),
+        "map": mapped,
+        **{name: getattr(file, name).model_dump(exclude_defaults=True) for name in ("limits", "still", "trigger")},
+    }
+    for name, table in tables.items():
+        if table:
+            lines += ["", f"[{name}]", *(f"{toml_key(key)} = {toml_value(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def commissioned(findings: Findings, base: Arm) -> Arm:
+    """The arm with what was found: signs, limits, counts per turn. Geometry and zero offsets stay those of `base`."""
+    joints = [
+        replace(
+            joint,
+            sign=found.sign,
+            limits_rad=None if found.endless else findings.limits_rad(k),
+            endless=found.endless,
+            counts_per_turn=found.counts_per_turn if findings.unit not in TURN else joint.counts_per_turn,
+        )
+        for k, (joint, found) in enumerate(zip(base.joints, findings.joints, strict=True))
+    ]
+    return replace(base, joints=tuple(joints), uncertainty=None)
+
+
+def arm_text(findings: Findings, base: Drawn) -> str:
+    """The text of the arm file."""
+    lines = [f"Written by ulna live commission; its geometry: {base.said}."]
+    if base.guessed:
+        lines.append("Lengths and twists are a first guess: put yours in, or let the calibration find what they are.")
+    lines.append("Signs, limits and counts per turn were found with the arm in the hand.")
+    lines.append('Zero offsets (theta0) were not: start the calibration with [fit] start = "search".')
+    if not all(joint.sign for joint in findings.joints):
+        lines.append("sign = 0: nobody could say which way the encoder counts; the calibration finds it.")
+    return "".join(_comment(line) + "\n" for line in lines) + "\n" + arm_toml(commissioned(findings, base.arm))
+
+
+def noise_text(findings: Findings) -> str:
+    """[noise] to paste into a study, a plan or a simulation with units = { angle = "rad" }."""
+    noise = [float(f"{findings.noise_rad(k):.3g}") for k in range(len(findings.joints))]
+    degrees = ", ".join(f"{math.degrees(each):.2g}" for each in noise)
+    lines = [
+        _comment("Written by ulna live commission. Paste it into a study, a plan or"),
+        _comment("a simulation in mm and rad. Standard deviations; the encoders in degrees:"),
+        _comment(f"{degrees}."),
+        "[noise]",
+        f"encoder = {toml_value(noise)}",
+        _comment("seat = 0.01    (of a touch, per coordinate; not found here: put yours in)"),
+        "",
+        _comment("In a study, as the zeros of the encoders are not known:"),
+        _comment("[fit]"),
+        _comment('start = "search"'),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _whole(counts: float | None) -> float | int | None:
+    return counts if counts is None or counts % 1.0 else int(counts)
+
+
+def _from(stated: StatedSource, folder: Path) -> str:
+    """The url as a file in the folder says it: paths in it are relative to that."""
+    scheme, _, rest = stated.file.url.partition(":")
+    if scheme.lower() not in _PATHS:
+        return stated.file.url
+    path, question, options = rest.partition("?")
+    moved = _moved(unquote(path), stated.folder, folder)
+    pairs = [pair.partition("=") for pair in options.split("&")] if options else []
+    told = "&".join(
+        f"{name}={quote(_moved(unquote(value), stated.folder, folder)) if name == 'poses' else value}"
+        for name, _, value in pairs
+    )
+    return f"{scheme}:{quote(moved)}{question}{told}"
+
+
+def _moved(path: str, origin: Path, folder: Path) -> str:
+    if not path or Path(path).is_absolute():
+        return path
+    try:
+        return Path(os.path.relpath((origin / path).absolute(), folder.absolute())).as_posix()
+    except ValueError:  # another drive
+        return (origin / path).absolute().as_posix()
+
+
+def _comment(text: str) -> str:
+    """A line that nothing in it can end."""
+    return "# " + "".join(c if c.isprintable() else "?" for c in text)
