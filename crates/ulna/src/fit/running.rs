@@ -2,10 +2,8 @@
 //!
 //! Readings are looked at from one arm, where it was last fitted. Each standing of an artefact is a leaf of a
 //! [`TriangleTree`]: its rows, its placement eliminated. A touch more, or one withdrawn, changes one leaf and the triangles
-//! above it, so what is known follows in the time of a few small triangles, and is what [`judge`] finds of all readings at
-//! once at that arm. Where the arm has moved by more than its uncertainty one fits anew, from there.
-//!
-//! [`judge`]: crate::fit::judged
+//! above it, so what is known follows in the time of a few small triangles, and is what a fit judges of all readings at once
+//! at that arm. Where the arm has moved by more than its uncertainty one fits anew, from there.
 
 use crate::artefacts::{Readings, Weighing};
 use crate::error::Result;
