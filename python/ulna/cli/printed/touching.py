@@ -34,41 +34,38 @@ def meter_line(meter: Meter) -> str:
     return f"{line} → goal {goal}{more}"
 
 
-def next_line(meter: Meter) -> str:
+def next_lines(meter: Meter) -> list[str]:
     """Where to touch next, as one says it to somebody."""
     suggestion = meter.next
     what = f"touch {for_people(suggestion.name)}" if suggestion.name else "touch it"
     held = [f"elbow {suggestion.elbow}"] if suggestion.elbow else []
-    held.append(f"probe from {suggestion.comes_from}")
-    how = ", ".join([what, *held])
+    how = ", ".join([what, *held, f"probe from {suggestion.comes_from}"])
     if suggestion.here:
-        return f"Next, where it stands: {how}"
+        return [f"Next, where it stands: {how}"]
     x, y, z = suggestion.stand.points_mm.mean(axis=0)
     stand = suggestion.stand
     lies = "" if stand.lies == "nowhere" else f", {stand.lies}, {stand.azimuth_deg:.0f}°"
-    return f"Next, put it at x {x:.0f}, y {y:.0f}, z {z:.0f} mm{lies}: {how}"
+    return [f"Next, put it at x {x:.0f}, y {y:.0f}, z {z:.0f} mm{lies}:", f"  {how}"]
 
 
 def meter_lines(meter: Meter) -> list[str]:
     """Both."""
-    return [meter_line(meter), next_line(meter)]
+    return [meter_line(meter), *next_lines(meter)]
 
 
 def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     """A touch that was taken, and what is odd about it."""
     touch = happened.touch
-    feature = f" of {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
-    moved = " (it was moved: a new place)" if happened.moved else ""
-    said = f"Touch {touch.number}{feature} in place {touch.standing}{moved}: {touch.samples} samples, "
-    said += f"spread {_length(touch.spread_mm)}"
+    feature = f", {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
+    said = f"Touch {touch.number}{feature} in place {touch.standing}: spread {_length(touch.spread_mm)}"
     if happened.scatter_mm is not None:
         said += f", scatter in its seat {_length(happened.scatter_mm)}"
     lines = [said + "."]
+    if happened.moved:
+        lines.append("It is far from where it was: taken as moved, a new place.")
     if happened.off_mm is not None and happened.times is not None and happened.times > SUSPICIOUS:
-        lines.append(
-            f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated? Repeat it, and "
-            "withdraw this one (w), or keep it."
-        )
+        lines.append(f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated?")
+        lines.append("Repeat it, and withdraw this one (w), or keep it.")
     return lines
 
 
@@ -79,14 +76,19 @@ def screen(session: Session, meter: Meter | None, said: list[str]) -> Renderable
     if window is not None:
         tip = session.arm_now.core.tip(window.q_rad[-1:].copy(), session.arm.probe_index(session.spec.probe))[0]
         bar = "█" * round(_BAR * session.rests)
-        place = Text(f"x {tip[0]:9.2f}  y {tip[1]:9.2f}  z {tip[2]:9.2f} mm   still [{bar:<{_BAR}}]", style="bold")
+        place = Text(f"x {tip[0]:8.2f}  y {tip[1]:8.2f}  z {tip[2]:8.2f} mm  still {bar:<{_BAR}}", style="bold")
     if session.stream.doubtful:
         place.append("  DOUBTFUL (t)", style="bold reverse")
     rows: list[RenderableType] = [place]
     if meter is not None:
-        rows += [Text(meter_line(meter), style="bold"), Text(next_line(meter))]
+        lines = next_lines(meter)
+        rows += [
+            Text(meter_line(meter), style="bold"),
+            *(Text(line) for line in lines),
+            *([Text("")] * (2 - len(lines))),
+        ]
     rows += [Text(""), *(Text(line) for line in said)]
-    rows += [Text(""), Text("space touch   n moved   w withdraw the last   t angles are right   q end", style="dim")]
+    rows += [Text(""), Text("space touch · n moved · w withdraw · t angles right · q end", style="dim")]
     return Group(*rows)
 
 
