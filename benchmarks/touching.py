@@ -18,7 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatch
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -29,9 +29,7 @@ from ulna.live.guide import Guide, Suggestion
 from ulna.live.running import RunningFit
 from ulna.live.touches import Touch
 from ulna.planning.file import load_plan_spec
-from ulna.planning.information import Coordinates
 from ulna.planning.spec import PlanSpec
-from ulna.planning.targets import Tests
 from ulna.simulation.mover import Mover
 from ulna.study.data import FitOptions, Noise
 
@@ -64,11 +62,11 @@ class Case:
         off[[any(fnmatch(name, held) for held in spec.hold) for name in drawing.parameter_names]] = 0.0
         return cls(drawing, drawing.with_parameters(drawing.core.parameters + off), spec, rng)
 
-    def begun(self, seed: int = 0) -> tuple[RunningFit, Guide]:
-        """Nothing touched yet."""
+    def begun(self, seed: int = 0, first: bool = False) -> tuple[RunningFit, Guide]:
+        """Nothing touched yet. first: candidates are drawn, and not taken from another guide of that seed."""
         noise = Noise(self.spec.encoder_rad, self.spec.seat_mm)
         fit = RunningFit(self.drawing, [self.spec.artefact], noise, FitOptions(hold=list(self.spec.hold)))
-        return fit, Guide(fit, self.spec, seed)
+        return fit, Guide(fit, self.spec, seed, None if first else drawn(seed).candidates)
 
     def put(self, suggestion: Suggestion) -> F64:
         """(2, 3) where the ends of the bar are: about where they were asked for."""
@@ -118,23 +116,33 @@ def reached(seed: int, choice: Choice) -> tuple[int, int, float, float]:
             continue
         count += 1
         fit.add(Touch(count, case.spec.artefact.name, str(place), suggestion.feature, 0, read))
-        if count >= 10:
+        if count >= 10 and count % 2 == 0:
             with suppress(ulna.UlnaInputError):  # too few for a fit
                 fit.refit()
         so_far = fit.so_far()
-    errors = fresh(case, fit.arm, guide)
+    errors = fresh(case, fit.arm)
     return count, len({touch.standing for touch in fit.touches}), 2.0 * u_mm, float(np.sqrt((errors**2).mean()))
 
 
-def fresh(case: Case, found: ulna.Arm, guide: Guide) -> F64:
+def fresh(case: Case, found: ulna.Arm) -> F64:
     """(500,) errors of 500 mm bars anywhere that no touch has seen, exactly touched, mm."""
-    nothing = Coordinates(np.eye(1), np.eye(1))
-    rng = np.random.default_rng(77)
-    q_rad = Tests.of(case.truth, guide.spec, guide.mover, 0, np.arange(1), nothing, rng).q_rad
-    ends = [arm.core.tip(q_rad.reshape(-1, found.n), 0).reshape(-1, 2, 3) for arm in (case.truth, found)]
+    flat = fresh_rad().reshape(-1, found.n)
+    ends = [arm.core.tip(flat, 0).reshape(-1, 2, 3) for arm in (case.truth, found)]
     true, read = (np.linalg.norm(each[:, 1] - each[:, 0], axis=1) for each in ends)
     errors: F64 = read - true
     return errors
+
+
+@cache
+def fresh_rad() -> F64:
+    """(500, 2, 7) postures at their ends."""
+    return drawn(DRAWS).test_rad
+
+
+@cache
+def drawn(seed: int) -> Guide:
+    """A guide whose candidates others take as well."""
+    return Case.of(0).begun(seed, first=True)[1]
 
 
 def times_ms(count: int) -> dict[str, float]:

@@ -12,13 +12,12 @@ from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 import ulna
 from ulna.live.ending import JOURNAL, begin, touches_in, write_result, write_study
 from ulna.live.faults import JUMP, Fault
+from ulna.live.guide import Guide
 from ulna.live.journal import SAMPLES, Journal, Reading
 from ulna.live.session import Event, Happened, Session
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream
 from ulna.live.trigger import Refused
-from ulna.planning.information import Coordinates
-from ulna.planning.targets import Tests
 
 GOAL_MM = 0.040
 
@@ -48,13 +47,11 @@ def played(session: Session) -> list[Event]:
 
 def length_errors(truth: ulna.Arm, found: ulna.Arm, session: Session) -> np.ndarray:
     """Of fresh 500 mm bars anywhere."""
-    guide = session.guide
-    rng = np.random.default_rng(77)
-    nothing = Coordinates(np.eye(1), np.eye(1))
-    q_rad = Tests.of(truth, guide.spec, guide.mover, 0, np.arange(1), nothing, rng).q_rad
-    ends = [arm.core.tip(q_rad.reshape(-1, arm.n), 0).reshape(-1, 2, 3) for arm in (truth, found)]
+    q_rad = Guide(session.fit, session.spec, seed=77, candidates=session.guide.candidates).test_rad.reshape(-1, found.n)
+    ends = [arm.core.tip(q_rad, 0).reshape(-1, 2, 3) for arm in (truth, found)]
     lengths = [np.linalg.norm(each[:, 1] - each[:, 0], axis=1) for each in ends]
-    return lengths[1] - lengths[0]
+    errors: np.ndarray = lengths[1] - lengths[0]
+    return errors
 
 
 def test_a_hand_that_follows_the_guide_reaches_the_goal(tmp_path: Path) -> None:

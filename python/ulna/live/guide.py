@@ -19,13 +19,14 @@ from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64
+from ulna.ground.errors import UlnaInputError
 from ulna.live.running import RunningFit, SoFar
 from ulna.live.touches import Touch, readings_of, tips
 from ulna.planning.candidates import Candidates, draw
 from ulna.planning.information import Coordinates, candidate_rows
 from ulna.planning.spec import PlanSpec
 from ulna.planning.stands import Stand, elbow_sides, probe_from, stands_of
-from ulna.planning.targets import Tests, test_mm
+from ulna.planning.targets import Tests, length_rows, test_mm
 from ulna.planning.touchable import touchable
 from ulna.simulation.mover import Mover, travel_or_limits
 from ulna.simulation.places import postures_on
@@ -91,7 +92,8 @@ class Guide:
     spec: as of a plan. Raises UlnaInputError where the artefact cannot be put anywhere, or joints have no limits.
     """
 
-    def __init__(self, fit: RunningFit, spec: PlanSpec, seed: int = 0) -> None:
+    def __init__(self, fit: RunningFit, spec: PlanSpec, seed: int = 0, candidates: Candidates | None = None) -> None:
+        """candidates: those of a guide for the same drawing and specification, which need not be drawn again."""
         self._fit = fit
         self._rng = np.random.default_rng([seed, 97])
         arm = fit.arm
@@ -103,13 +105,19 @@ class Guide:
         self.spec = replace(spec, candidates=max(1, TOUCHES // self._per_place), touches=touches, seed=seed)
         self.mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
         """Finds postures."""
-        self._candidates = draw(self.spec, self.mover, self._probe, self._rng)
+        self.candidates = candidates or draw(self.spec, self.mover, self._probe, self._rng)
+        """Measurements in new places."""
+        bars, free = np.random.default_rng([self.spec.seed, 43]), self._arm_free()
+        whole = Coordinates(np.eye(len(free)), np.eye(len(free)))
+        self.test_rad = Tests.of(arm, self.spec, self.mover, self._probe, free, whole, bars).q_rad
+        """(N, 2, n) postures at the ends of the test bars."""
         self._look_rad = self.mover.anywhere(LOOKED_AT, self._rng)
         self._rows: F64 | None = None
         self._tests: F64 | None = None
         self._at_mm: F64 | None = None
         self._at_hand: tuple[str, tuple[F64, F64, I64]] | None = None
-        self._planned: tuple[str, Candidates, int] | None = None
+        self._planned: int | None = None
+        """Number of the candidate for which the artefact was put where it stands."""
 
     def worth(self, so_far: SoFar) -> Worth:
         """What lengths are worth with what is known so far."""
@@ -123,17 +131,19 @@ class Guide:
 
         rows, tests = self._look()
         total = max(float(_variances(tests, so_far.covariance).mean()), 1e-300)
+        if not kind_of(self.spec.artefact).placed(self.spec.artefact):
+            return self._fixed(so_far, total)
         own = [] if standing is None else self._own(standing)
-        missing = self._missing(own)
-        if own and missing is not None:
-            return missing
+        unfinished = self._unfinished(own)
+        if unfinished is not None:
+            return unfinished
         gains = _core.gains(rows, so_far.triangle, tests) / self._per_place
         best = int(gains.argmax())
         if own and len(own) < MOST_HERE:
             here = self._here(own, total)
             if here is not None and here.gain * WORTH_MOVING >= gains[best] / total:
                 return here
-        self._planned = (standing or "", self._candidates, best)
+        self._planned = best
         return self._in_new_place(best, 0, float(gains[best]) / total)
 
     def touches_more(self, so_far: SoFar, goal_u_mm: float) -> int | None:
@@ -168,35 +178,59 @@ class Guide:
     def any_touch(self, rng: np.random.Generator, standing: str | None, most: int) -> Suggestion:
         """A touch at random, so many in a place: what suggestions are compared with."""
         own = [] if standing is None else self._own(standing)
-        missing = self._missing(own)
-        if own and missing is not None:
-            return missing
+        unfinished = self._unfinished(own)
+        if unfinished is not None:
+            return unfinished
         if own and len(own) < most:
             points_mm, q_rad, feature = self._postures(own)
             if len(q_rad):
                 k = int(rng.integers(len(q_rad)))
                 return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
-        best = int(rng.integers(len(self._candidates)))
-        self._planned = (standing or "", self._candidates, best)
+        best = int(rng.integers(len(self.candidates)))
+        self._planned = best
         return self._in_new_place(best, 0, 0.0)
 
     def _own(self, standing: str) -> list[Touch]:
         name = self.spec.artefact.name
         return [each for each in self._fit.counting() if (each.artefact, each.standing) == (name, standing)]
 
-    def _missing(self, own: Sequence[Touch]) -> Suggestion | None:
-        """A feature that was not touched yet in this place; None where all were."""
-        if kind_of(self.spec.artefact).scattered or self._planned is None:
+    def _unfinished(self, own: Sequence[Touch]) -> Suggestion | None:
+        """What a place was chosen for and is not touched yet: a feature, or the next place on a surface; None where
+        all is."""
+        if not own or self._planned is None:
             return None
+        if kind_of(self.spec.artefact).scattered:
+            return self._in_new_place(self._planned, len(own), 0.0, True) if len(own) < self._per_place else None
+        untouched = self._untouched(own)
+        return self._in_new_place(self._planned, untouched[0], 0.0, True) if untouched else None
+
+    def _untouched(self, own: Sequence[Touch]) -> list[int]:
         touched = {touch.feature for touch in own}
-        names = self._names()
-        untouched = [k for k in range(len(names)) if k not in touched]
-        if not untouched:
-            return None
-        return self._in_new_place(self._planned[2], untouched[0], 0.0, bool(own))
+        return [k for k in range(len(self._names())) if k not in touched]
+
+    def _fixed(self, so_far: SoFar, total: float) -> Suggestion:
+        """The best touch of features whose places are known in the arm's frame."""
+        import ulna._core as _core
+
+        artefact = self.spec.artefact
+        points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
+        if self._at_hand is None:
+            self._at_hand = "", self._postures_at(points_mm)
+        _, q_rad, feature = self._at_hand[1]
+        count = len(q_rad)
+        if not count:
+            raise UlnaInputError(
+                f"{self.spec.label}: artefact '{artefact.name}': the arm reaches none of its features; expected some "
+                "within reach. Move it, or widen the travel."
+            )
+        touches = [Touch(k + 1, artefact.name, str(k), int(feature[k]), self._probe, q_rad[k]) for k in range(count)]
+        rows = self._padded(self._fit.rows_of(readings_of(touches, artefact)).reshape(count, -1, len(self._fit.free())))
+        gains = _core.gains(rows, so_far.triangle, self._look()[1])
+        best = int(gains.argmax())
+        return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, float(gains[best]) / total)
 
     def _in_new_place(self, number: int, feature: int, gain: float, here: bool = False) -> Suggestion:
-        candidates = self._candidates
+        candidates = self.candidates
         poses = candidates.poses(np.array([number]))[0]
         points_mm = candidates.features_mm[candidates.place[number]]
         return self._suggestion(feature, poses[feature, 0], points_mm, here, gain)
@@ -215,7 +249,9 @@ class Guide:
         known = self._fit.without(self.spec.artefact.name, own[0].standing)
         tests = self._look()[1]
         gains = _core.gains(self._with_one_more(own, q_rad, feature), known.triangle, tests)
-        alone = _core.gains(self._with_one_more(own, None, None), known.triangle, tests)[0]
+        without = self._with_one_more(own, None, None)
+        # too few in a place tell nothing: they are all needed to know where it is
+        alone = _core.gains(without, known.triangle, tests)[0] if without.shape[1] else 0.0
         best = int(gains.argmax())
         gain = float(gains[best] - alone) / total
         return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, gain)
@@ -224,20 +260,20 @@ class Guide:
         """(K, 3) where the features are, (N, n) postures on them, and (N,) which feature each is on; found once in each
         place."""
         place = own[0].standing
-        if self._at_hand is None or self._at_hand[0] != place:
+        if self._at_hand is None or self._at_hand[0] != place or not len(self._at_hand[1][1]):
             self._at_hand = place, self._find_postures(own)
         return self._at_hand[1]
 
     def _find_postures(self, own: Sequence[Touch]) -> tuple[F64, F64, I64]:
-        none = np.zeros((0, 3)), np.zeros((0, self._fit.arm.n)), np.zeros(0, np.int64)
-        if kind_of(self.spec.artefact).scattered:
-            return none
+        if kind_of(self.spec.artefact).scattered or self._untouched(own):
+            return np.zeros((0, 3)), np.zeros((0, self._fit.arm.n)), np.zeros(0, np.int64)
         at_mm, feature = tips(self._fit.arm, own), np.array([touch.feature for touch in own])
-        count = len(self._names())
-        points_mm = np.array([at_mm[feature == k].mean(axis=0) for k in range(count)])
-        each = HERE // count
-        what = touchable(self.spec, self._fit.arm, self._probe)
-        standing = what.standing(self.spec, self._fit.arm)
+        return self._postures_at(np.array([at_mm[feature == k].mean(axis=0) for k in range(len(self._names()))]))
+
+    def _postures_at(self, points_mm: F64) -> tuple[F64, F64, I64]:
+        count = len(points_mm)
+        each = max(1, HERE // count)
+        standing = touchable(self.spec, self._fit.arm, self._probe).standing(self.spec, self._fit.arm)
         points = np.repeat(points_mm, each, axis=0)
         seed = int(self._rng.integers(2**63))
         q_rad, reached = postures_on(standing, self.mover, points, self._probe, {}, seed)
@@ -277,7 +313,7 @@ class Guide:
         at_mm = arm.core.tip(self._look_rad, self._probe)
         if self._rows is None or self._tests is None or self._at_mm is None or self._far(at_mm):
             self._at_mm = at_mm
-            rows = candidate_rows(self.spec, arm, self._probe, self._arm_free(), self._candidates)
+            rows = candidate_rows(self.spec, arm, self._probe, self._arm_free(), self.candidates)
             self._rows = self._padded(rows)
             self._tests = self._tests_of(arm)
         return self._rows, self._tests
@@ -292,10 +328,9 @@ class Guide:
         return free[free < len(self._fit.arm.parameter_names)]
 
     def _tests_of(self, arm: Arm) -> F64:
-        free = self._arm_free()
-        whole = Coordinates(np.eye(len(free)), np.eye(len(free)))
-        rng = np.random.default_rng([self.spec.seed, 43])
-        return self._padded(Tests.of(arm, self.spec, self.mover, self._probe, free, whole, rng).length_rows)
+        flat = self.test_rad.reshape(-1, arm.n)
+        moved = arm.core.jacobian(flat, self._probe)[:, :, self._arm_free()]
+        return self._padded(length_rows(arm.core.tip(flat, self._probe), moved))
 
     def _padded(self, rows: F64) -> F64:
         """With zeros for dimensions of artefacts that are fitted: a plan takes them as certified."""

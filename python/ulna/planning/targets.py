@@ -57,7 +57,7 @@ class Tests:
         flat = poses.reshape(-1, arm.n)
         p_mm = arm.core.tip(flat, probe)
         moved = arm.core.jacobian(flat, probe)[:, :, free] @ coordinates.to_free
-        return cls(poses, _lengths(p_mm, moved), _points(p_mm, moved))
+        return cls(poses, length_rows(p_mm, moved), _points(p_mm, moved))
 
 
 def test_mm(arm: Arm, spec: PlanSpec, probe: int) -> float:
@@ -69,7 +69,8 @@ def test_mm(arm: Arm, spec: PlanSpec, probe: int) -> float:
     return widest if widest > 0.0 and spec.artefact.frame == "free" else 0.5 * arm.core.reach_mm(probe)
 
 
-def _lengths(p_mm: F64, moved: F64) -> F64:
+def length_rows(p_mm: F64, moved: F64) -> F64:
+    """(N, F) how the lengths between each two of (2 N, 3) places follow what moves these, (2 N, 3, F)."""
     first, second = p_mm[0::2], p_mm[1::2]
     along = (second - first) / np.linalg.norm(second - first, axis=1, keepdims=True)
     rows: F64 = np.einsum("ni,nij->nj", along, moved[1::2] - moved[0::2])

@@ -109,6 +109,10 @@ fn inverse_upper(triangle: &[f64], n: usize) -> Mat<f64> {
 
 fn check(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Result<()> {
     let n = candidates.unknowns;
+    if candidates.each * n == 0 {
+        let got = candidates.each.min(n);
+        return Err(Error::Shape { what: "the rows of a candidate, or their columns,".into(), got, expected: 1 });
+    }
     let shapes = [
         ("the candidates' rows", candidates.rows.len(), candidates.count() * candidates.each * n),
         ("the triangle of the information at hand", triangle.len(), n * n),
@@ -191,6 +195,7 @@ mod tests {
         let (rows, triangle) = (some(12, 1.0), [1.0, 0.5, 0.0, 2.0]);
         let candidates = Candidates { rows: &rows, each: 1, unknowns: 2 };
         assert!(gains(&candidates, &triangle, &[1.0, 0.0]).is_ok());
+        assert!(gains(&Candidates { each: 0, ..candidates }, &triangle, &[1.0, 0.0]).is_err());
         assert!(gains(&candidates, &triangle[..3], &[1.0, 0.0]).is_err());
         assert!(gains(&candidates, &triangle, &[]).is_err());
         assert!(gains(&candidates, &[1.0, 0.5, 0.0, 0.0], &[1.0, 0.0]).is_err());
