@@ -20,8 +20,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.journal import TOUCH, WITHDRAWAL, Journal, Reading
 from ulna.live.running import RunningFit
 from ulna.live.samples import Hello
-from ulna.live.session import from_dict
-from ulna.live.touches import Touch
+from ulna.live.touches import Touch, from_dict
 from ulna.simulation.study_files import names_for, study_toml, write_tables
 from ulna.study.study import Study
 

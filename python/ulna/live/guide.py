@@ -20,8 +20,10 @@ from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import Readings
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
+from ulna.live.at_hand import AtHand
 from ulna.live.running import RunningFit, SoFar
-from ulna.live.touches import Touch, readings_of, tips
+from ulna.live.touches import Touch, readings_of
+from ulna.live.worth import Worth, mean_variance, variances
 from ulna.planning.candidates import Candidates, draw
 from ulna.planning.information import Coordinates, candidate_rows
 from ulna.planning.spec import PlanSpec
@@ -29,14 +31,11 @@ from ulna.planning.stands import Stand, elbow_sides, probe_from, stands_of
 from ulna.planning.targets import Tests, length_rows, test_mm
 from ulna.planning.touchable import touchable
 from ulna.simulation.mover import Mover, travel_or_limits
-from ulna.simulation.places import postures_on
 
 TOUCHES = 20_000
 """Of all candidates in new places, together."""
 IN_A_PLACE = 6
 """Touches that a new place is judged by."""
-HERE = 200
-"""Postures tried where the artefact stands."""
 MOST_HERE = 12
 """Touches in one place, then the artefact is moved: it may have moved by itself."""
 WORTH_MOVING = 1.2
@@ -74,18 +73,6 @@ class Suggestion:
     """From where the probe comes."""
 
 
-@dataclass(frozen=True)
-class Worth:
-    """How sure a length would be, now."""
-
-    u_mm: float
-    """Root mean square over the test lengths of what the arm contributes to their standard uncertainty."""
-    worst_mm: float
-    """The largest."""
-    length_mm: float
-    """Of the test bars."""
-
-
 class Guide:
     """Suggestions for one arm, artefact and purpose.
 
@@ -115,22 +102,20 @@ class Guide:
         self._rows: F64 | None = None
         self._tests: F64 | None = None
         self._at_mm: F64 | None = None
-        self._at_hand: tuple[str, tuple[F64, F64, I64]] | None = None
+        self._at_hand = AtHand(fit, self.spec, self.mover, self._rng)
         self._planned: int | None = None
         """Number of the candidate for which the artefact was put where it stands."""
 
     def worth(self, so_far: SoFar) -> Worth:
         """What lengths are worth with what is known so far."""
-        variances = _variances(self._look()[1], so_far.covariance)
-        length_mm = test_mm(self._fit.arm, self.spec, self._probe)
-        return Worth(float(np.sqrt(variances.mean())), float(np.sqrt(variances.max())), length_mm)
+        return Worth.of(self._look()[1], so_far.covariance, test_mm(self._fit.arm, self.spec, self._probe))
 
     def next(self, so_far: SoFar, standing: str | None = None) -> Suggestion:
         """The best touch now. standing: where the artefact stands; None: nowhere yet. Raises UlnaInputError."""
         import ulna._core as _core
 
         rows, tests = self._look()
-        total = max(float(_variances(tests, so_far.covariance).mean()), 1e-300)
+        total = max(float(variances(tests, so_far.covariance).mean()), 1e-300)
         if not kind_of(self.spec.artefact).placed(self.spec.artefact):
             return self._fixed(so_far, total)
         own = [] if standing is None else self._own(standing)
@@ -154,14 +139,14 @@ class Guide:
         rows, tests = self._look()
         some = np.ascontiguousarray(rows[:: max(1, len(rows) // LOOKED_AHEAD)])
         triangle, goal = so_far.triangle, goal_u_mm**2
-        if float(_variances(tests, so_far.covariance).mean()) <= goal:
+        if float(variances(tests, so_far.covariance).mean()) <= goal:
             return None
         # what is not known of artefacts no touch can lower
-        beside = max(0.0, float(_variances(tests, so_far.covariance).mean()) - _mean_variance(tests, triangle))
+        beside = max(0.0, float(variances(tests, so_far.covariance).mean()) - mean_variance(tests, triangle))
         for place in range(1, MOST_AHEAD + 1):
             best = int(_core.gains(some, triangle, tests).argmax())
             triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, some[best]]), mode="r"))
-            now = _mean_variance(tests, triangle)
+            now = mean_variance(tests, triangle)
             if now + beside <= goal:
                 return place * self._per_place
         return None
@@ -182,7 +167,7 @@ class Guide:
         if unfinished is not None:
             return unfinished
         if own and len(own) < most:
-            points_mm, q_rad, feature = self._postures(own)
+            points_mm, q_rad, feature = self._at_hand.postures(own)
             if len(q_rad):
                 k = int(rng.integers(len(q_rad)))
                 return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
@@ -201,22 +186,15 @@ class Guide:
             return None
         if kind_of(self.spec.artefact).scattered:
             return self._in_new_place(self._planned, len(own), 0.0, True) if len(own) < self._per_place else None
-        untouched = self._untouched(own)
+        untouched = self._at_hand.untouched(own)
         return self._in_new_place(self._planned, untouched[0], 0.0, True) if untouched else None
-
-    def _untouched(self, own: Sequence[Touch]) -> list[int]:
-        touched = {touch.feature for touch in own}
-        return [k for k in range(len(self._names())) if k not in touched]
 
     def _fixed(self, so_far: SoFar, total: float) -> Suggestion:
         """The best touch of features whose places are known in the arm's frame."""
         import ulna._core as _core
 
         artefact = self.spec.artefact
-        points_mm = np.array(list(artefact.features.values()), dtype=np.float64)
-        if self._at_hand is None:
-            self._at_hand = "", self._postures_at(points_mm)
-        _, q_rad, feature = self._at_hand[1]
+        points_mm, q_rad, feature = self._at_hand.fixed()
         count = len(q_rad)
         if not count:
             raise UlnaInputError(
@@ -243,7 +221,7 @@ class Guide:
         """
         import ulna._core as _core
 
-        points_mm, q_rad, feature = self._postures(own)
+        points_mm, q_rad, feature = self._at_hand.postures(own)
         if not len(q_rad):
             return None
         known = self._fit.without(self.spec.artefact.name, own[0].standing)
@@ -255,29 +233,6 @@ class Guide:
         best = int(gains.argmax())
         gain = float(gains[best] - alone) / total
         return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, gain)
-
-    def _postures(self, own: Sequence[Touch]) -> tuple[F64, F64, I64]:
-        """(K, 3) where the features are, (N, n) postures on them, and (N,) which feature each is on; found once in each
-        place."""
-        place = own[0].standing
-        if self._at_hand is None or self._at_hand[0] != place or not len(self._at_hand[1][1]):
-            self._at_hand = place, self._find_postures(own)
-        return self._at_hand[1]
-
-    def _find_postures(self, own: Sequence[Touch]) -> tuple[F64, F64, I64]:
-        if kind_of(self.spec.artefact).scattered or self._untouched(own):
-            return np.zeros((0, 3)), np.zeros((0, self._fit.arm.n)), np.zeros(0, np.int64)
-        at_mm, feature = tips(self._fit.arm, own), np.array([touch.feature for touch in own])
-        return self._postures_at(np.array([at_mm[feature == k].mean(axis=0) for k in range(len(self._names()))]))
-
-    def _postures_at(self, points_mm: F64) -> tuple[F64, F64, I64]:
-        count = len(points_mm)
-        each = max(1, HERE // count)
-        standing = touchable(self.spec, self._fit.arm, self._probe).standing(self.spec, self._fit.arm)
-        points = np.repeat(points_mm, each, axis=0)
-        seed = int(self._rng.integers(2**63))
-        q_rad, reached = postures_on(standing, self.mover, points, self._probe, {}, seed)
-        return points_mm, q_rad[reached], np.repeat(np.arange(count), each)[reached]
 
     def _with_one_more(self, own: Sequence[Touch], q_rad: F64 | None, feature: I64 | None) -> F64:
         """(N, k, F) rows of the touches in one place with one of N more, each as a place of its own; without any: (1,
@@ -347,14 +302,3 @@ def _with(many: Readings, count: int, q_rad: F64, feature: I64) -> Readings:
     more.q_rad[len(many) :], more.feature[len(many) :] = q_rad, feature
     more.placement = Labels(place, many.labels.names)
     return more.select(np.argsort(place, kind="stable"))
-
-
-def _mean_variance(tests: F64, triangle: F64) -> float:
-    """Of the test lengths, from the triangle of what is known."""
-    half = np.linalg.solve(triangle.T, tests.T)
-    return float((half**2).sum(axis=0).mean())
-
-
-def _variances(rows: F64, covariance: F64) -> F64:
-    variances: F64 = np.maximum(np.einsum("ij,ij->i", rows @ covariance, rows), 0.0)
-    return variances

@@ -272,9 +272,8 @@ class Reading:
     def _left_out(self, at: int, size: int, tail: bytes) -> None:
         if _has_record(tail[1:]):
             raise UlnaInputError(
-                f"{self.path}: damaged at byte {at}: a record's checksum is wrong, and others follow; expected "
-                f"{WHAT} as it "
-                "was written. Take a copy of it."
+                f"{self.path}: damaged at byte {at}: a record's checksum is wrong, and others follow; expected {WHAT} "
+                "as it was written. Take a copy of it."
             )
         self.cut = (
             f"{self.path}: the last {size - at} bytes are no whole record, and are left out: it was cut while writing."

@@ -32,7 +32,7 @@ def tell(arm: Arm, artefact: Artefact, own: list[Touch], tip_mm: F64, expected: 
     if kind_of(artefact).scattered or not artefact.features:
         return Told(0, False)
     if not own:
-        return Told(first, kind_of(artefact).placed(artefact))
+        return Told(first, False)
     off_mm = _off(arm, artefact, own, tip_mm)
     if expected is not None and off_mm[expected] < NEAR_MM and off_mm[expected] < 2.0 * off_mm.min() + 1.0:
         return Told(expected, False)

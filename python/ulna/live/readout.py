@@ -18,16 +18,14 @@ from ulna.live.faults import DOUBTFUL
 from ulna.live.features import Feature, Notebook, Point
 from ulna.live.figures import LENGTH, Calibrated, Figure
 from ulna.live.postures import folded, near_stops, travel_of
-from ulna.live.recent import HOP_S, Recent, Window
-from ulna.live.samples import Samples
-from ulna.live.still import LEAST_SAMPLES, StillLimits, Stillness, stillness
+from ulna.live.recent import HOP_S, Window
+from ulna.live.resting import Rests
+from ulna.live.still import StillLimits, Stillness
 from ulna.live.stream import Frames, Stream
-from ulna.live.trigger import Refused, Taken, Trigger
+from ulna.live.trigger import Refused, Taken
 
 TIP_S = 0.1
 """So often a program is told where the tip is."""
-_LISTENED_S = 0.3
-"""From so long a stream its rate is taken, where the source does not say it."""
 UNSURE = "how its encoders scatter is not known, so nothing tells rest from motion. State --encoder-u, or give a result"
 
 
@@ -86,9 +84,8 @@ class ReadOut:
         if self._sample_rad is None and arm.noise.variance_mm2 == 0.0 and by_itself:
             raise UlnaInputError(f"arm '{arm.arm.name}': {UNSURE}.")
         self._by_itself = by_itself
-        self._early: list[tuple[Samples, F64]] = []
-        self._recent: Recent | None = None
-        self._trigger: Trigger | None = None
+        stops, seat_mm = travel_of(arm.arm), math.sqrt(arm.noise.variance_mm2)
+        self._rests = Rests(stream, arm.tips_mm, self._covariance_mm2, seat_mm, stops, by_itself)
         self._newest: tuple[float, F64] | None = None
         self._tip_s = -math.inf
         self._known: dict[tuple[str, str, tuple[float, ...]], list[Figure]] = {}
@@ -98,7 +95,7 @@ class ReadOut:
     @property
     def limits(self) -> StillLimits | None:
         """How long, and how still, a touch is; None as long as the stream's rate is not known."""
-        return None if self._trigger is None else self._trigger.limits
+        return self._rests.limits
 
     def take(self, frames: Frames, tips: bool = False) -> Iterator[Said]:
         """What came, and what follows from it: touches by themselves or by the arm's button, why there is none; with
@@ -109,26 +106,21 @@ class ReadOut:
                 self._forget()
         if not len(frames.samples):
             return
-        for window in self._windows(frames.samples, frames.q_rad):
+        for window in self._rests.windows(frames.samples, frames.q_rad):
             self._newest = float(window.t_s[-1]), window.q_rad[-1]
             if tips and not 0.0 <= window.t_s[-1] - self._tip_s < TIP_S - 0.5 * HOP_S:
                 self._tip_s = float(window.t_s[-1])
                 yield self._tip(window)
             yield from self._looked(window)
-        samples = frames.samples
-        times = samples.t_host_s if samples.t_device_s is None else samples.t_device_s
-        self._newest = float(times[-1]), frames.q_rad[-1]
+        self._newest = float(frames.samples.t_s[-1]), frames.q_rad[-1]
 
     def ask(self) -> Set | Refused:
         """A touch, now."""
         if self.doubt is not None:
             return Refused(f"the angles may be wrong: {self.doubt}")
-        window = None if self._recent is None else self._recent.newest()
-        if window is None or self._trigger is None:
-            return Refused("too little came yet: hold still and try again")
-        if not self._tells:
+        if self._rests.newest() is not None and not self._tells:
             return Refused(UNSURE)
-        return self._answer(self._trigger.ask(*self._places(window)))
+        return self._answer(self._rests.ask())
 
     def trust(self) -> None:
         """Somebody looked, and says that the angles are right."""
@@ -139,7 +131,7 @@ class ReadOut:
         """Where the tip is; None where nothing came yet."""
         if self._newest is None:
             return None
-        window = None if self._recent is None else self._recent.newest()
+        window = self._rests.newest()
         return self._tip(window or Window(np.array([self._newest[0]]), self._newest[1][None], False))
 
     def figures(self, feature: Feature) -> list[Figure]:
@@ -154,48 +146,17 @@ class ReadOut:
         """Whether something is known by which rest is told from motion."""
         return self._sample_rad is not None or self.arm.noise.variance_mm2 > 0.0
 
-    def _windows(self, samples: Samples, q_rad: F64) -> Iterator[Window]:
-        recent = self._recent
-        if recent is not None:
-            yield from recent.push(samples, q_rad)
-            return
-        self._early.append((samples, q_rad))
-        recent = self._recent = self._begun()
-        if recent is not None:
-            early, self._early = self._early, []
-            for some, angles in early:
-                yield from recent.push(some, angles)
-
-    def _begun(self) -> Recent | None:
-        """Once the rate is known."""
-        times = np.concatenate(
-            [each.t_host_s if each.t_device_s is None else each.t_device_s for each, _ in self._early]
-        )
-        rate_hz = self.stream.source.hello.rate_hz
-        seconds = float(times[-1] - times[0])
-        if rate_hz is None:
-            if len(times) < LEAST_SAMPLES or seconds < _LISTENED_S:
-                return None
-            rate_hz = (len(times) - 1) / seconds
-        covariance = self._covariance_mm2(self._early[-1][1][-1])
-        noise_mm = math.sqrt(max(float(np.trace(covariance)) / 3.0, 0.0))
-        limits = StillLimits.of(noise_mm, rate_hz, math.sqrt(self.arm.noise.variance_mm2))
-        limits = limits.stated_by(self.stream.stated.file.still, rate_hz)
-        self._trigger = Trigger(limits, travel_of(self.arm.arm), self._by_itself)
-        return Recent(self.arm.arm.n, limits.window_s + 2.0 / rate_hz)
-
     def _forget(self) -> None:
-        self._early, self._newest = [], None
-        if self._recent is not None:
-            self._recent.forget()
+        self._newest = None
+        self._rests.forget()
 
     def _looked(self, window: Window) -> Iterator[Said]:
-        if self._trigger is None or self.doubt is not None or not (self._by_itself or window.button):
+        if self.doubt is not None or not (self._by_itself or window.button):
             return
         if window.button:
-            yield self._answer(self._trigger.ask(*self._places(window))) if self._tells else Refused(UNSURE)
+            yield self._answer(self._rests.ask()) if self._tells else Refused(UNSURE)
             return
-        found = self._trigger.look(*self._places(window))
+        found = self._rests.look(window)
         if found is not None:
             yield self._answer(found)
 
@@ -208,11 +169,6 @@ class ReadOut:
         point = Point(name, found.q_rad, rest.samples, rest.spread_mm, rest.drift_mm, *times, figures)
         return Set(point, self.notebook.take(point))
 
-    def _places(self, window: Window) -> tuple[F64, F64, F64, F64]:
-        """Times, angles, places of the tip, and the covariance of one sample of it."""
-        covariance = self._covariance_mm2(window.q_rad[-1])
-        return window.t_s, window.q_rad, self.arm.tips_mm(window.q_rad), covariance
-
     def _covariance_mm2(self, q_rad: F64) -> F64:
         """(3, 3) of one sample, from its encoders; where nothing is known of them, as a touch scatters."""
         if self._sample_rad is None:
@@ -223,12 +179,7 @@ class ReadOut:
 
     def _tip(self, window: Window) -> Tip:
         t_s, q_rad = float(window.t_s[-1]), window.q_rad[-1]
-        rest = None
-        # as long as a touch needs to be
-        whole = self.limits is not None and window.t_s[-1] - window.t_s[0] >= self.limits.window_s * (1.0 - 1e-9)
-        if self._trigger is not None and self._tells and whole:
-            times, _, p_mm, covariance = self._places(window)
-            rest = stillness(times, p_mm, covariance, self._trigger.limits)
+        rest = self._rests.stillness(window) if self._tells else None
         figures = tuple(self.arm.point(q_rad, "the tip"))
         if self.doubt is not None:
             why = f"the angles may be wrong: {self.doubt}"

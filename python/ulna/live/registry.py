@@ -68,8 +68,7 @@ def kind_of(stated: StatedSource) -> Kind:
     if kind is None:
         raise UlnaInputError(
             f"source '{stated.url.text}': unknown kind '{stated.url.scheme}:'.{nearest(stated.url.scheme, KINDS)} "
-            f"Correct "
-            "it, or write file: before a path."
+            "Correct it, or write file: before a path."
         )
     need(f"source {stated.url.scheme}:", *kind.needs)
     return kind
@@ -86,8 +85,7 @@ def open_wire(stated: StatedSource) -> Wire:
     if not kind.bytes:
         raise UlnaInputError(
             f"source '{stated.url.text}': brings readings, not bytes to be guessed at; expected a line, a connection "
-            f"or "
-            "messages. Use ulna live watch."
+            "or messages. Use ulna live watch."
         )
     return cast("Wire", importlib.import_module(kind.module).wire(stated))
 

@@ -7,8 +7,7 @@ what happened. All that happened is in its journal before it is told.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,24 +16,22 @@ from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import DOUBTFUL, Fault
-from ulna.live.guide import Guide, Suggestion, Worth
+from ulna.live.guide import Guide, Suggestion
 from ulna.live.journal import Journal
-from ulna.live.places import tell
-from ulna.live.recent import Recent, Window
+from ulna.live.places import Told, tell
+from ulna.live.postures import travel_of
+from ulna.live.resting import Rests
 from ulna.live.ring import Ring
 from ulna.live.running import RunningFit, SoFar
-from ulna.live.samples import Samples
-from ulna.live.still import StillLimits, stillness
 from ulna.live.stream import Frames, Stream
-from ulna.live.touches import Touch, tips
-from ulna.live.trigger import Refused, Taken, Trigger, same_pose
+from ulna.live.touches import Touch, as_dict, tips
+from ulna.live.trigger import Refused, Taken, same_pose
+from ulna.live.worth import Worth
 from ulna.planning.spec import PlanSpec
 from ulna.study.data import FitOptions, Noise
 
 AROUND_S = 1.0
 """Of the stream around each touch that its journal keeps."""
-RATE_S = 1.0
-"""Of a stream that does not say its rate, so much is looked at."""
 REFIT_TO = 500
 """Touches up to which the arm is fitted after each; with more after every tenth."""
 SUSPICIOUS = 5.0
@@ -109,13 +106,9 @@ class Session:
         self._probe = arm.probe_index(spec.probe)
         self._suggestion: Suggestion | None = None
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
-        self._recent: Recent | None = None
-        self._early: list[tuple[Samples, F64]] = []
-        """What came before the rate was known."""
-        self._trigger: Trigger | None = None
-        self._covariance_mm2: F64 = np.eye(3)
-        self.window: Window | None = None
-        """The newest that was looked at."""
+        self._rests = Rests(stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself)
+        self.no_fit: str | None = None
+        """Why the touches so far are not fitted, in words; None: they are, or there are none."""
 
     # ------------------------------------------------------------ what comes
 
@@ -124,8 +117,8 @@ class Session:
         for fault in frames.faults:
             if self.journal is not None:
                 self.journal.event({"fault": fault.as_dict()})
-            if fault.kind in DOUBTFUL and self._recent is not None:
-                self._recent.forget()
+            if fault.kind in DOUBTFUL:
+                self._rests.forget()
             yield fault
         samples = frames.samples
         if not len(samples):
@@ -133,28 +126,17 @@ class Session:
         if self.keep_all and self.journal is not None:
             self.journal.samples(samples)
         self._ring.push(samples)
-        if self._recent is None:
-            self._early.append((samples, frames.q_rad))
-            rate_hz = self._rate_hz()
-            if rate_hz is None:
-                return
-            recent = self._begin(frames, rate_hz)
-            waiting, self._early = self._early, []
-        else:
-            recent, waiting = self._recent, [(samples, frames.q_rad)]
-        for some, q_rad in waiting:
-            for window in recent.push(some, q_rad):
-                self.window = window
-                yield from self._look(window)
+        for window in self._rests.windows(samples, frames.q_rad):
+            found = self._rests.ask() if window.button else self._rests.look(window)
+            if found is not None:
+                yield self._answer(found)
 
-    def ask(self) -> Iterator[Event]:
+    def ask(self) -> Event:
         """A touch now, by a key or a pedal."""
-        if self.journal is not None and self.window is not None:
-            self.journal.event({"asked_s": float(self.window.t_s[-1])})
-        if self.window is None or self._trigger is None:
-            yield Refused("nothing has come yet")
-            return
-        yield from self._asked(self.window)
+        window = self._rests.newest()
+        if self.journal is not None and window is not None:
+            self.journal.event({"asked_s": float(window.t_s[-1])})
+        return self._answer(self._rests.ask())
 
     def trust(self) -> None:
         """Who holds the arm says that the angles are right again."""
@@ -199,19 +181,14 @@ class Session:
 
     @property
     def rests(self) -> float:
-        """How much of the time has passed for which the tip must rest, 0 to 1: 0 while it moves."""
-        if self.window is None or self._trigger is None or len(self.window.t_s) < 4:
-            return 0.0
-        t_s = self.window.t_s
-        p_mm = self.arm_now.core.tip(self.window.q_rad, self._probe)
-        # the longest end of the window that rests, by halves
-        for part in (1.0, 0.5, 0.25):
-            first = int(np.searchsorted(t_s, t_s[-1] - part * self._trigger.limits.window_s))
-            if len(t_s) - first >= 4 and t_s[-1] - t_s[0] >= part * self._trigger.limits.window_s * 0.999:
-                found = stillness(t_s[first:], p_mm[first:], self._covariance_mm2, self._trigger.limits)
-                if found.still:
-                    return part
-        return 0.0
+        """For how much of the time for which it must the tip has been resting, 0 to 1."""
+        return self._rests.share()
+
+    @property
+    def tip_mm(self) -> F64 | None:
+        """(3,) where the tip is, by the arm as it is known; None where nothing came yet."""
+        window = self._rests.newest()
+        return None if window is None else self._tip_mm(window.q_rad[-1])
 
     @property
     def arm_now(self) -> Arm:
@@ -220,74 +197,50 @@ class Session:
 
     # ------------------------------------------------------------ inside
 
-    def _rate_hz(self) -> float | None:
-        """As the source says, or as its first second shows; None until then. By the samples' own times: the same
-        however they came in."""
-        stated = self.stream.source.hello.rate_hz
-        if stated:
-            return stated
-        t_s = np.concatenate([samples.t_s for samples, _ in self._early])
-        over = np.flatnonzero(t_s - t_s[0] >= RATE_S)
-        return None if not len(over) else float(over[0] / (t_s[over[0]] - t_s[0]))
+    def _tips_mm(self, q_rad: F64) -> F64:
+        """By the arm as it was at the beginning: whether a tip rests must not depend on how well the arm is known."""
+        return self.arm.core.tip(q_rad, self._probe)
 
-    def _begin(self, frames: Frames, rate_hz: float) -> Recent:
-        """Limits for this stream's rate and noise."""
-        q_rad = frames.q_rad[-1]
-        jacobian = self.arm.core.encoder_jacobian(np.ascontiguousarray(q_rad[None]), self._probe)[0]
-        covariance = (jacobian * self.spec.encoder_rad**2) @ jacobian.T
-        noise_mm = float(np.sqrt(max(np.trace(covariance) / 3.0, 0.0)))
-        limits = StillLimits.of(noise_mm, rate_hz, self.spec.seat_mm)
-        limits = limits.stated_by(self.stream.stated.file.still, rate_hz)
-        # an endless joint has no stop
-        stops = [joint.limits_rad or (np.nan, np.nan) for joint in self.arm.joints]
-        self._trigger = Trigger(limits, np.array(stops, dtype=np.float64), self.by_itself)
-        self._recent = Recent(self.arm.n, limits.window_s * 1.05)
-        return self._recent
+    def _covariance_mm2(self, q_rad: F64) -> F64:
+        jacobian = self.arm.core.encoder_jacobian(q_rad[None], self._probe)[0]
+        found: F64 = (jacobian * self.spec.encoder_rad**2) @ jacobian.T
+        return found
 
-    def _look(self, window: Window) -> Iterator[Event]:
-        assert self._trigger is not None
-        if window.button:
-            yield from self._asked(window)
-            return
-        p_mm = self._tips(window)
-        found = self._trigger.look(window.t_s, window.q_rad, p_mm, self._covariance_mm2)
-        if found is not None:
-            yield from self._taken(found, p_mm)
+    def _tip_mm(self, q_rad: F64) -> F64:
+        found: F64 = self.arm_now.core.tip(np.ascontiguousarray(q_rad[None]), self._probe)[0]
+        return found
 
-    def _asked(self, window: Window) -> Iterator[Event]:
-        assert self._trigger is not None
-        p_mm = self._tips(window)
-        yield from self._taken(self._trigger.ask(window.t_s, window.q_rad, p_mm, self._covariance_mm2), p_mm)
+    def _answer(self, found: Taken | Refused) -> Refused | Happened:
+        """A rest as a touch, or why it is none; in the journal before it is told."""
+        told = found if isinstance(found, Refused) else self._judged(found)
+        if isinstance(told, Refused) and self.journal is not None:
+            self.journal.event({"refused": told.reason})
+        return told
 
-    def _tips(self, window: Window) -> F64:
-        core = self.arm.core
-        last = np.ascontiguousarray(window.q_rad[-1:])
-        jacobian = core.encoder_jacobian(last, self._probe)[0]
-        self._covariance_mm2 = (jacobian * self.spec.encoder_rad**2) @ jacobian.T
-        return core.tip(np.ascontiguousarray(window.q_rad), self._probe)
-
-    def _taken(self, found: Taken | Refused, p_mm: F64) -> Iterator[Event]:
-        if isinstance(found, Taken):
-            found = self._doubt(found)
-        if isinstance(found, Refused):
-            if self.journal is not None:
-                self.journal.event({"refused": found.reason})
-            yield found
-            return
-        tip_mm = self.arm_now.core.tip(found.q_rad[None], self._probe)[0]
+    def _judged(self, found: Taken) -> Refused | Happened:
+        if self.stream.doubtful:
+            return Refused(
+                "the angles are in doubt since a fault of the stream: check the arm, then say they are right"
+            )
         expected = None if self._suggestion is None else self._suggestion.feature
-        told = tell(self.arm_now, self.spec.artefact, self._own(), tip_mm, expected)
-        again = self._again(found, told.feature, told.moved)
+        told = tell(self.arm_now, self.spec.artefact, self._own(), self._tip_mm(found.q_rad), expected)
+        again = self._again(found, told)
         if again is not None:
-            yield Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
-            return
-        if told.moved or not self.place:
-            self.place += 1
-        touch = Touch(
+            return Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
+        self.place = self.place + 1 if told.moved else max(self.place, 1)
+        touch = self._touch(found, told.feature)
+        self._keep(touch)
+        self.fit.add(touch)
+        self._refit()
+        off_mm, times = self._off(touch)
+        return Happened(touch, told.moved, self._scatter(touch), off_mm, times)
+
+    def _touch(self, found: Taken, feature: int) -> Touch:
+        return Touch(
             number=max((each.number for each in self.fit.touches), default=0) + 1,
             artefact=self.spec.artefact.name,
             standing=str(self.place),
-            feature=told.feature,
+            feature=feature,
             probe=self._probe,
             q_rad=found.q_rad,
             begun_s=found.begun_s,
@@ -296,25 +249,13 @@ class Session:
             spread_mm=found.stillness.spread_mm,
             drift_mm=found.stillness.drift_mm,
         )
-        self._keep(touch)
-        self.fit.add(touch)
-        self._refit()
-        off_mm, times = self._off(touch)
-        yield Happened(touch, told.moved and self.place > 1, self._scatter(touch), off_mm, times)
-
-    def _doubt(self, found: Taken) -> Taken | Refused:
-        if self.stream.doubtful:
-            return Refused(
-                "the angles are in doubt since a fault of the stream: check the arm, then say they are right"
-            )
-        return found
 
     def _own(self) -> list[Touch]:
         name, place = self.spec.artefact.name, str(self.place)
         return [each for each in self.fit.counting() if (each.artefact, each.standing) == (name, place)]
 
-    def _again(self, found: Taken, feature: int, moved: bool) -> int | None:
-        own = [] if moved else [each for each in self._own() if each.feature == feature]
+    def _again(self, found: Taken, told: Told) -> int | None:
+        own = [] if told.moved else [each for each in self._own() if each.feature == told.feature]
         if kind_of(self.spec.artefact).scattered or not own:
             return None
         which = same_pose(found.q_rad, np.array([each.q_rad for each in own]))
@@ -334,9 +275,10 @@ class Session:
             return
         try:
             self.fit.refit()
-        except UlnaInputError:
-            # too few for a fit: what is known so far is told all the same
-            return
+            self.no_fit = None
+        except UlnaInputError as error:
+            # too few, at first: what is known so far is told all the same
+            self.no_fit = str(error)
 
     def _scatter(self, touch: Touch) -> float | None:
         own = [each for each in self._own() if each.feature == touch.feature]
@@ -355,13 +297,3 @@ class Session:
         if row >= len(residual):
             return None, None
         return float(np.linalg.norm(residual[row])), float(fitted.lengths(0)[row])
-
-
-def as_dict(touch: Touch) -> dict[str, Any]:
-    """As a journal has it: JSON types, every digit."""
-    return asdict(touch) | {"q_rad": touch.q_rad.tolist()}
-
-
-def from_dict(record: dict[str, Any]) -> Touch:
-    """What `as_dict` made."""
-    return Touch(**{**record, "q_rad": np.array(record["q_rad"], dtype=np.float64)})

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -75,3 +76,13 @@ def tips(arm: Arm, touches: Sequence[Touch]) -> F64:
     q_rad = np.array([touch.q_rad for touch in touches])
     probe = np.array([touch.probe for touch in touches], dtype=np.int64)
     return arm.core.tip(q_rad, probe)
+
+
+def as_dict(touch: Touch) -> dict[str, Any]:
+    """As a journal has it: JSON types, every digit."""
+    return asdict(touch) | {"q_rad": touch.q_rad.tolist()}
+
+
+def from_dict(record: dict[str, Any]) -> Touch:
+    """What `as_dict` made."""
+    return Touch(**{**record, "q_rad": np.array(record["q_rad"], dtype=np.float64)})

@@ -71,9 +71,8 @@ class Url:
             value = float("nan")
         if not least <= value <= most:
             raise UlnaInputError(
-                f"source '{self.text}': option '{name}': got '{self.options[name]}', expected a number from "
-                f"{least:g} to "
-                f"{most:g}. Correct it."
+                f"source '{self.text}': option '{name}': got '{self.options[name]}', expected a number from {least:g} "
+                f"to {most:g}. Correct it."
             )
         return value
 

@@ -79,6 +79,30 @@ pub(super) fn solve_lower(l: &[f64], n: usize, b: &mut [f64], width: usize) {
     }
 }
 
+/// `tr(A⁻¹ B)` of a positive definite A and a symmetric B, which is overwritten, of k rows; none where A is not.
+pub(super) fn quotient_trace(a: &[f64], b: &mut [f64], k: usize) -> Option<f64> {
+    if k == 1 {
+        return Some(b[0] / a[0]);
+    }
+    let l = cholesky(a, k)?;
+    // tr(L⁻¹ B L⁻ᵀ): B is symmetric, so the second solve takes the transposed of the first
+    solve_lower(&l, k, b, k);
+    let mut turned: Vec<f64> = (0..k * k).map(|i| b[i % k * k + i / k]).collect();
+    solve_lower(&l, k, &mut turned, k);
+    Some((0..k).map(|i| turned[i * k + i]).sum())
+}
+
+/// `aᵀ b`, four sums at a time.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = fours.remainder().iter().zip(others.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in fours.zip(others) {
+        (0..4).for_each(|i| sums[i] += x[i] * y[i]);
+    }
+    rest + sums.iter().sum::<f64>()
+}
+
 /// The inverse of a positive definite matrix; none where it is not.
 pub(super) fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let l = cholesky(matrix, n)?;
@@ -117,18 +141,7 @@ const LEAST_LEFT: f64 = 1e-9;
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn some(count: usize, seed: f64) -> Vec<f64> {
-        (0..count).map(|k| ((k * k) as f64 * 0.618 + seed).sin() + 0.3 * (k as f64 * seed * 0.77).cos()).collect()
-    }
-
-    fn information(rows: &[f64], n: usize) -> Vec<f64> {
-        let mut m = vec![0.0; n * n];
-        for row in rows.chunks_exact(n) {
-            (0..n * n).for_each(|k| m[k] += row[k / n] * row[k % n]);
-        }
-        m
-    }
+    use crate::design::samples::{information, some};
 
     #[test]
     fn an_update_equals_the_inverse_computed_anew() {

@@ -1,6 +1,6 @@
 //! What makes a set of measurements good: a number of the covariance C, the smaller the better.
 
-use super::blocks::{cholesky, product, product_transposed, solve_lower};
+use super::blocks::{cholesky, dot, product, product_transposed, quotient_trace};
 use faer::{Mat, Side};
 
 /// What is made small. The rows F are directions in the candidates' coordinates, `unknowns` numbers each: `F C Fᵀ` is the
@@ -80,32 +80,15 @@ pub(super) fn gain(c: &[f64], weight: Option<&[f64]>, z: &[f64], n: usize) -> f6
     let mut inner = product_transposed(&product(z, c, n), z, n);
     (0..k).for_each(|i| inner[i * k + i] += 1.0);
     let mut outer = weight.map(|weight| product_transposed(&product(z, weight, n), z, n));
-    let Some(l) = cholesky(&inner, k) else { return 0.0 };
     match &mut outer {
-        None => (0..k).map(|i| 2.0 * l[i * k + i].ln()).sum(),
-        Some(outer) => {
-            // tr(L⁻¹ A L⁻ᵀ): A is symmetric, so the second solve takes the transposed of the first
-            solve_lower(&l, k, outer, k);
-            let mut turned: Vec<f64> = (0..k * k).map(|i| outer[i % k * k + i / k]).collect();
-            solve_lower(&l, k, &mut turned, k);
-            (0..k).map(|i| turned[i * k + i]).sum()
-        }
+        None => cholesky(&inner, k).map_or(0.0, |l| (0..k).map(|i| 2.0 * l[i * k + i].ln()).sum()),
+        Some(outer) => quotient_trace(&inner, outer, k).unwrap_or(0.0),
     }
 }
 
-/// `zᵀ C z`, four sums at a time.
+/// `zᵀ C z`.
 fn quadratic(c: &[f64], z: &[f64], n: usize) -> f64 {
-    let mut total = 0.0;
-    for (row, &factor) in c.chunks_exact(n).zip(z) {
-        let mut sums = [0.0; 4];
-        let (rows, others) = (row.chunks_exact(4), z.chunks_exact(4));
-        let rest: f64 = rows.remainder().iter().zip(others.remainder()).map(|(a, b)| a * b).sum();
-        for (a, b) in rows.zip(others) {
-            (0..4).for_each(|i| sums[i] += a[i] * b[i]);
-        }
-        total += factor * (rest + sums.iter().sum::<f64>());
-    }
-    total
+    c.chunks_exact(n).zip(z).map(|(row, &factor)| factor * dot(row, z)).sum()
 }
 
 fn variances(f: &[f64], c: &[f64], n: usize) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! What one more measurement would be worth, of very many at once.
 
-use super::blocks::{Candidates, cholesky, solve_lower};
+use super::blocks::{Candidates, dot, quotient_trace};
 use crate::error::{Error, Result};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
@@ -65,27 +65,9 @@ impl Here<'_> {
                 (self.outer[i * each + j], self.outer[j * each + i]) = (outer, outer);
             }
         }
-        if each == 1 {
-            return self.outer[0] / self.inner[0];
-        }
         // I + W Wᵀ is positive definite whatever W is
-        let Some(l) = cholesky(self.inner, each) else { return 0.0 };
-        solve_lower(&l, each, self.outer, each);
-        let mut turned: Vec<f64> = (0..each * each).map(|k| self.outer[k % each * each + k / each]).collect();
-        solve_lower(&l, each, &mut turned, each);
-        (0..each).map(|k| turned[k * each + k]).sum()
+        quotient_trace(self.inner, self.outer, each).unwrap_or(0.0)
     }
-}
-
-/// Four sums at a time.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = fours.remainder().iter().zip(others.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in fours.zip(others) {
-        (0..4).for_each(|i| sums[i] += x[i] * y[i]);
-    }
-    rest + sums.iter().sum::<f64>()
 }
 
 fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
@@ -139,18 +121,7 @@ fn check(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Resul
 mod tests {
     use super::*;
     use crate::design::blocks::inverse;
-
-    fn some(count: usize, seed: f64) -> Vec<f64> {
-        (0..count).map(|k| ((k * k) as f64 * 0.618 + seed).sin() + 0.3 * (k as f64 * seed * 0.77).cos()).collect()
-    }
-
-    fn information(rows: &[f64], n: usize) -> Vec<f64> {
-        let mut m = vec![0.0; n * n];
-        for row in rows.chunks_exact(n) {
-            (0..n * n).for_each(|k| m[k] += row[k / n] * row[k % n]);
-        }
-        m
-    }
+    use crate::design::samples::{information, some};
 
     /// The plain version: the mean variance before and after, from inverses of whole information matrices.
     #[test]

@@ -11,6 +11,8 @@ mod blocks;
 mod criterion;
 mod exchange;
 mod gains;
+#[cfg(test)]
+mod samples;
 
 pub use blocks::Candidates;
 pub use criterion::Criterion;

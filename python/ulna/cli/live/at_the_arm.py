@@ -6,21 +6,23 @@ import json
 import os
 import select
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from ulna.cli.interrupting import asked_to_end
+from rich.console import RenderableType
+
+from ulna.cli.live.keys import pressed
+from ulna.cli.live.rounds import Round
+from ulna.cli.live.watching import read_on
 from ulna.cli.printed.touching import happened_lines, meter_lines, record_of, screen
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import Fault
 from ulna.live.session import Event, Happened, Meter, Session
-from ulna.live.source import SourceEnded
+from ulna.live.stream import Frames
 from ulna.live.trigger import Refused
 
 FRAMES_HZ = 20.0
 """A screen that is read while both hands are on an arm need not be faster; samples are, all the same."""
-READ_S = 0.01
 KEYS = {" ": "touch", "n": "moved", "w": "withdraw", "t": "trust", "q": "end"}
 """Key → the word that does the same."""
 LAST = 4
@@ -39,25 +41,22 @@ class Bench:
 
     def run(self) -> None:
         """Until it is ended: by a key or a word, after so many touches or seconds, by the source or by Ctrl-C."""
-        at_terminal = sys.stdout.isatty() and not self.as_json
-        begin = shown = time.monotonic()
         self._known()
-        with asked_to_end() as asked, _asking() as words, _showing(at_terminal) as show:
-            while not (self._ended or asked.is_set()):
-                if self.seconds is not None and time.monotonic() - begin >= self.seconds:
-                    break
-                try:
-                    frames = self.session.stream.read(READ_S)
-                except SourceEnded as ended:
-                    self._tell([f"The source ended: {ended}"])
-                    break
+        at_terminal = sys.stdout.isatty() and not self.as_json
+        with _asking() as words, _showing(at_terminal) as show:
+
+            def each(known: Round, frames: Frames) -> None:
                 for event in self.session.feed(frames):
                     self._event(event)
                 for word in words():
                     self._do(word)
-                if show is not None and time.monotonic() - shown >= 1.0 / FRAMES_HZ:
-                    show(screen(self.session, self.meter, self.said))
-                    shown = time.monotonic()
+
+            def tick(known: Round) -> None:
+                show(screen(self.session, self.meter, self.said))
+
+            known = read_on(self.session.stream, self.seconds, each, tick, FRAMES_HZ, lambda: self._ended)
+        if known.why is not None:
+            self._tell([f"The source ended: {known.why}"])
 
     def _do(self, line: str) -> None:
         word, _, rest = line.strip().partition(" ")
@@ -66,8 +65,7 @@ class Bench:
                 case "":
                     return
                 case "touch":
-                    for event in self.session.ask():
-                        self._event(event)
+                    self._event(self.session.ask())
                 case "moved":
                     self.session.moved()
                     self._known()
@@ -138,56 +136,39 @@ def _tone(taken: bool, as_json: bool) -> None:
 @contextmanager
 def _asking() -> Iterator[Callable[[], list[str]]]:
     """Words that came since the last call: keys of a terminal, lines of anything else."""
-    try:
-        stdin = sys.stdin.fileno()
-    except (OSError, ValueError, AttributeError):
-        yield list
-        return
-    if os.isatty(stdin):
-        with _single_keys(stdin):
-            yield lambda: [KEYS[key] for key in _waiting(stdin) if key in KEYS]
+    if sys.stdin.isatty():
+        with pressed() as keys:
+            yield lambda: [KEYS[key] for key in keys() if key in KEYS]
         return
     rest = ""
 
     def lines() -> list[str]:
         nonlocal rest
-        rest += _waiting(stdin)
+        rest += _waiting()
         *whole, rest = rest.split("\n")
         return whole
 
     yield lines
 
 
-@contextmanager
-def _single_keys(stdin: int) -> Iterator[None]:
-    import termios
-    import tty
-
-    before = termios.tcgetattr(stdin)
-    try:
-        tty.setcbreak(stdin)
-        yield
-    finally:
-        termios.tcsetattr(stdin, termios.TCSADRAIN, before)
-
-
-def _waiting(stdin: int) -> str:
+def _waiting() -> str:
     """What can be read without waiting."""
     try:
-        if not select.select([stdin], [], [], 0.0)[0]:
+        file = sys.stdin.fileno()
+        if not select.select([file], [], [], 0.0)[0]:
             return ""
-        return os.read(stdin, 4096).decode("utf-8", "replace")
-    except OSError:
+        return os.read(file, 4096).decode("utf-8", "replace")
+    except (OSError, ValueError):  # nobody is there to say anything
         return ""
 
 
 @contextmanager
-def _showing(at_terminal: bool) -> Iterator[Callable[[object], None] | None]:
+def _showing(at_terminal: bool) -> Iterator[Callable[[RenderableType], None]]:
     if not at_terminal:
-        yield None
+        yield lambda parts: None
         return
     from rich.console import Console
     from rich.live import Live
 
     with Live(console=Console(highlight=False), auto_refresh=False, transient=True) as live:
-        yield lambda parts: live.update(parts, refresh=True)  # type: ignore[arg-type]
+        yield lambda parts: live.update(parts, refresh=True)

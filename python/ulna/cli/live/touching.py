@@ -98,9 +98,10 @@ def touch(
             Bench(session, as_json, touches, seconds).run()
     if session.fit.fitted is None:
         count = len(session.fit.counting())
+        why = session.no_fit or "nothing was touched"
         output.say(
-            f"{out}: {count} touches are in its journal, too few for a fit: nothing else was written. The same command "
-            "goes on with them."
+            f"{out}: {count} touches are in its journal, too few for a fit: nothing else was written ({why}). The same "
+            "command goes on with them."
         )
         return
     study, left_out = write_study(session.fit, out)

@@ -12,7 +12,7 @@ from typing import Any
 from ulna.cli.interrupting import asked_to_end
 from ulna.cli.live.rounds import Round
 from ulna.live.source import SourceEnded
-from ulna.live.stream import Frames, streaming
+from ulna.live.stream import Frames, Stream, streaming
 
 FRAMES_HZ = 60.0
 """A screen shows no more; what is not shown is not lost."""
@@ -32,23 +32,35 @@ def go_round(
     """Reads a source until it ends, the time is over, `ended`, or Ctrl-C; `tick` is called hz times a second. angles:
     whether they are needed, or what was sent is enough."""
     with streaming(source, angles) as stream:
-        known = Round(stream)
-        begin = shown = time.monotonic()
-        with asked_to_end() as asked:  # Ctrl-C is the one way to end it, and a good one
-            while not (asked.is_set() or ended()) and (seconds is None or time.monotonic() - begin < seconds):
-                try:
-                    frames = stream.read(1.0 / FRAMES_HZ)
-                except SourceEnded as ended:
-                    known.why = str(ended)
-                    known.fault(stream.source.faults())
-                    break
-                known.take(frames)
-                each(known, frames)
-                if time.monotonic() - shown >= 1.0 / hz:
-                    tick(known)
-                    shown = time.monotonic()
-            tick(known)
-            return known
+        return read_on(stream, seconds, each, tick, hz, ended)
+
+
+def read_on(
+    stream: Stream,
+    seconds: float | None,
+    each: Callable[[Round, Frames], None],
+    tick: Callable[[Round], None],
+    hz: float,
+    ended: Callable[[], bool] = lambda: False,
+) -> Round:
+    """The same with a stream that is open."""
+    known = Round(stream)
+    begin = shown = time.monotonic()
+    with asked_to_end() as asked:  # Ctrl-C is the one way to end it, and a good one
+        while not (asked.is_set() or ended()) and (seconds is None or time.monotonic() - begin < seconds):
+            try:
+                frames = stream.read(1.0 / FRAMES_HZ)
+            except SourceEnded as end:
+                known.why = str(end)
+                known.fault(stream.source.faults())
+                break
+            known.take(frames)
+            each(known, frames)
+            if time.monotonic() - shown >= 1.0 / hz:
+                tick(known)
+                shown = time.monotonic()
+        tick(known)
+        return known
 
 
 def watch(source: str, seconds: float | None, as_json: bool) -> None:

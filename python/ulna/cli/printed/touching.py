@@ -11,7 +11,8 @@ from rich.text import Text
 
 from ulna.ground.errors import for_people
 from ulna.live.faults import Fault
-from ulna.live.session import SUSPICIOUS, Event, Happened, Meter, as_dict
+from ulna.live.session import SUSPICIOUS, Event, Happened, Meter
+from ulna.live.touches import as_dict
 from ulna.live.trigger import Refused
 
 if TYPE_CHECKING:
@@ -71,12 +72,11 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
 
 def screen(session: Session, meter: Meter | None, said: list[str]) -> RenderableType:
     """80 columns, always as many lines."""
-    window = session.window
-    place = Text("nothing has come yet")
-    if window is not None:
-        tip = session.arm_now.core.tip(window.q_rad[-1:].copy(), session.arm.probe_index(session.spec.probe))[0]
+    tip_mm, place = session.tip_mm, Text("nothing has come yet")
+    if tip_mm is not None:
+        x, y, z = tip_mm
         bar = "█" * round(_BAR * session.rests)
-        place = Text(f"x {tip[0]:8.2f}  y {tip[1]:8.2f}  z {tip[2]:8.2f} mm  still {bar:<{_BAR}}", style="bold")
+        place = Text(f"x {x:8.2f}  y {y:8.2f}  z {z:8.2f} mm  still {bar:<{_BAR}}", style="bold")
     if session.stream.doubtful:
         place.append("  DOUBTFUL (t)", style="bold reverse")
     rows: list[RenderableType] = [place]

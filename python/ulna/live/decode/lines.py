@@ -31,8 +31,7 @@ class Lines:
             if len(line) > LONGEST_LINE:
                 self.too_long = (
                     f"a line of more than {LONGEST_LINE} bytes, beginning with {line[:40]!r}; expected lines of "
-                    f"readings. "
-                    "Check the speed (baud) and what the device sends."
+                    "readings. Check the speed (baud) and what the device sends."
                 )
                 del parts[k:]
                 break

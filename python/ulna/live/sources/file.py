@@ -81,8 +81,7 @@ class CsvBlocks:
         if not any(cells) or not 0 < len(self._kept) <= MOST_CHANNELS:
             raise UlnaInputError(
                 f"{path}: line 1: {len(self._kept)} channels; expected 1 to {MOST_CHANNELS}, with a line of names or "
-                f"of "
-                "numbers first. Name those that are read in [decode] names."
+                "of numbers first. Name those that are read in [decode] names."
             )
         names_kept = tuple(channels[k] for k in self._kept)
         self.hello = Hello(names_kept, unit, str(path), None if self._host is not None else rate_hz)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import threading
-from collections import deque
 from typing import Any
 
 from ulna.ground.errors import UlnaInputError
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
+from ulna.live.sources.mailbox import Mailbox
 from ulna.live.sources.wire import WireSource
 from ulna.live.tables import FieldsTable
 
@@ -36,8 +36,7 @@ class MqttWire:
         tls = url.scheme == "mqtts"
         port = url.port or (PORT_TLS if tls else PORT)
         self.device = f"{url.scheme}://{url.host}:{port}/{self._topic}"
-        self._pieces: deque[bytes] = deque()
-        self._came, self._ready = threading.Event(), threading.Event()
+        self._mailbox, self._ready = Mailbox(), threading.Event()
         self._refused = list[str]()
         self._gone: str | None = None
         client: Any = Client(CallbackAPIVersion.VERSION2)
@@ -53,8 +52,7 @@ class MqttWire:
         except OSError as error:
             raise UlnaInputError(
                 f"{self.device}: no broker answers ({error.strerror or error}); expected one. Check the address, and "
-                f"that it "
-                "runs."
+                "that it runs."
             ) from None
         client.loop_start()
         if not self._ready.wait(10.0):
@@ -79,19 +77,14 @@ class MqttWire:
 
     def _left(self, _client: Any, _data: Any, _flags: Any, reason: Any, _properties: Any) -> None:
         self._gone = f"{self.device}: the broker is gone ({reason})."
-        self._came.set()
+        self._mailbox.wake()
 
     def _message(self, _client: Any, _data: Any, message: Any) -> None:
-        self._pieces.append(message.payload)
-        self._came.set()
+        self._mailbox.put(message.payload)
 
     def receive(self) -> list[bytes]:
         """As `Wire`."""
-        self._came.wait(0.1)
-        self._came.clear()
-        found = []
-        while self._pieces:
-            found.append(self._pieces.popleft())
+        found = self._mailbox.taken()
         if not found and self._gone is not None:
             raise SourceEnded(self._gone)
         return found

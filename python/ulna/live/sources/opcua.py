@@ -93,8 +93,7 @@ class OpcUaSource:
         if not found:
             raise UlnaInputError(
                 f"{self._device}: no variable 'ActualPosition' in {seen} nodes; expected one of each axis. Name them "
-                f"with "
-                "?node=ns=2;s=NAME&node=…"
+                "with ?node=ns=2;s=NAME&node=…"
             )
         return found
 

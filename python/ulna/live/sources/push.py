@@ -9,7 +9,6 @@ from __future__ import annotations
 import hmac
 import ipaddress
 import threading
-from collections import deque
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -18,6 +17,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.decode.decoder import Decoder
 from ulna.live.decode.json_values import JsonValues
 from ulna.live.source_file import StatedSource
+from ulna.live.sources.mailbox import Mailbox, taken_port
 from ulna.live.sources.wire import WireSource
 from ulna.live.tables import FieldsTable
 
@@ -40,19 +40,14 @@ class PushWire:
                 f"{self.device}/?token=WORDS. Add it."
             )
         self._token = token
-        self._pieces: deque[bytes] = deque()
-        self._came = threading.Event()
+        self._mailbox = Mailbox()
         self._busy = threading.Lock()
         try:
             self._server: Any = serve(
                 self._sent, host, port, process_request=self._admit, max_size=MOST_BYTES, close_timeout=1
             )
         except OSError as error:
-            raise UlnaInputError(
-                f"{self.device}: cannot be listened to ({error.strerror or error}); expected a free port. Name "
-                f"another, or "
-                "end the program that has it."
-            ) from None
+            raise taken_port(self.device, error) from None
         self.port = self._server.socket.getsockname()[1]
         threading.Thread(target=self._server.serve_forever, daemon=True, name=f"serves {self.device}").start()
 
@@ -78,8 +73,7 @@ class PushWire:
             return
         try:
             for message in connection:
-                self._pieces.append(message.encode() if isinstance(message, str) else message)
-                self._came.set()
+                self._mailbox.put(message.encode() if isinstance(message, str) else message)
         except ConnectionClosed:
             pass  # whoever sent may come again; what lacks meanwhile is a gap
         finally:
@@ -87,12 +81,7 @@ class PushWire:
 
     def receive(self) -> list[bytes]:
         """As `Wire`."""
-        self._came.wait(0.1)
-        self._came.clear()
-        found = []
-        while self._pieces:
-            found.append(self._pieces.popleft())
-        return found
+        return self._mailbox.taken()
 
     def close(self) -> None:
         """As `Wire`."""

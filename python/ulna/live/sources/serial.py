@@ -27,9 +27,8 @@ class SerialWire:
             self._port = serial.Serial(path, baud, timeout=0.1, parity=parity[0].upper(), stopbits=stop)
         except (OSError, ValueError, serial.SerialException) as error:
             raise UlnaInputError(
-                f"serial:{path}: cannot be opened ({_said(error)}); expected a serial port. See which there are "
-                f"with: ulna "
-                "live ports"
+                f"serial:{path}: cannot be opened ({_said(error)}); expected a serial port. See which there are with: "
+                "ulna live ports"
             ) from None
 
     def receive(self) -> list[bytes]:

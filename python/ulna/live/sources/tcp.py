@@ -24,8 +24,7 @@ class TcpWire:
         except OSError as error:
             raise UlnaInputError(
                 f"{self.device}: nobody answers ({error.strerror or error}); expected a device that sends readings. "
-                f"Check the "
-                "address, and that it is on."
+                "Check the address, and that it is on."
             ) from None
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         self._socket.settimeout(0.1)

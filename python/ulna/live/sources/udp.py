@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import socket
 
-from ulna.ground.errors import UlnaInputError
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
+from ulna.live.sources.mailbox import taken_port
 from ulna.live.sources.wire import WireSource
 from ulna.live.tables import FieldsTable
 
@@ -31,11 +31,7 @@ class UdpWire:
                 self._socket.close()
                 raise
         except OSError as error:
-            raise UlnaInputError(
-                f"{self.device}: cannot be listened to ({error.strerror or error}); expected a free port. Name "
-                f"another, or "
-                "end the program that has it."
-            ) from None
+            raise taken_port(self.device, error) from None
         self._socket.settimeout(0.1)
 
     def receive(self) -> list[bytes]:

@@ -88,9 +88,8 @@ class WireSource:
                 heard = f"; {said.bytes} bytes came that are none" if said.bytes else ""
                 shown = next((f": {fault.text}" for fault in said.taken(end=True)), "")
                 raise UlnaInputError(
-                    f"{self._wire.device}: no reading in {wait_s:g} s{heard}{shown or '.'} Expected lines of "
-                    f"numbers, or what "
-                    "[decode] says. See what comes with: ulna live guess"
+                    f"{self._wire.device}: no reading in {wait_s:g} s{heard}{shown or '.'} Expected lines of numbers, "
+                    "or what [decode] says. See what comes with: ulna live guess"
                 )
         if len(self._decoder.channels) > MOST_CHANNELS:
             raise UlnaInputError(

@@ -35,8 +35,7 @@ class WsWire:
         except (OSError, InvalidHandshake, InvalidURI, EOFError) as error:
             raise UlnaInputError(
                 f"{device}: nobody answers as a WebSocket ({_said(error)}); expected a server that sends readings. "
-                f"Check the "
-                "address, and that it is on."
+                "Check the address, and that it is on."
             ) from None
 
     def receive(self) -> list[bytes]:
