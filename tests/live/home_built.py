@@ -84,17 +84,21 @@ class HomeBuilt:
         t = t_s + np.arange(len(q_rad)) / RATE_HZ
         return Samples(t, None, self.counts(q_rad))
 
-    def whole(self, ways: Sequence[int] | None = None, skipped: Sequence[int] = ()) -> F64:
-        """(N, n) an arm commissioned: held still, each joint turned, then turned in its direction. ways: of which
-        joints; skipped: never turned, only waited for."""
+    def whole(
+        self, ways: Sequence[int] | None = None, skipped: Sequence[int] = (), posture_rad: F64 | None = None
+    ) -> F64:
+        """(N, n) an arm commissioned: held still, each joint turned, put in a posture, then each turned in its
+        direction, the last one first. ways: of which joints; skipped: never turned, only waited for."""
         here = np.zeros(self.n)
         pieces = [np.repeat(here[None], int(4.3 * RATE_HZ), axis=0)]
         for k in range(self.n):
-            if k in skipped:
-                pieces.append(np.repeat(here[None], int(30.5 * RATE_HZ), axis=0))
-                continue
-            pieces.append(self.turn(here, [k]))
-            if ways is None or k in ways:
-                pieces += [self.way(here, k)]
+            waits = np.repeat(here[None], int(30.5 * RATE_HZ), axis=0)
+            pieces.append(waits if k in skipped else self.turn(here, [k]))
+        if posture_rad is not None:
+            pieces.append(self.move(here, posture_rad, 2.3))
+            here = posture_rad
+        for k in reversed(range(self.n) if ways is None else sorted(ways)):
+            if k not in skipped:
+                pieces.append(self.way(here, k))
                 here = pieces[-1][-1]
         return np.vstack(pieces)

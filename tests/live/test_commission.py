@@ -44,11 +44,8 @@ def played(arm: HomeBuilt, q_rad: np.ndarray, joints: int | None = None, **more:
 
 
 def agree(findings: Findings, arm: HomeBuilt) -> None:
-    """With the truth. What hangs on a joint stands where that was left, 40° away."""
-    offset = arm.offset.copy()
-    if arm.coupled is not None:
-        joint, other, ratio = arm.coupled
-        offset[other] += ratio * arm.signs[joint] * COUNTS * 40 / 360
+    """With the truth."""
+    offset = arm.offset
     noise = np.sqrt(arm.noise**2 + 1 / 12)
     for k, joint in enumerate(findings.joints):
         assert joint.channel == f"c{arm.order[k] + 1}"
@@ -123,9 +120,10 @@ def test_both_ways_is_no_direction() -> None:
     work = Commissioning(arm.hello, 4, ways=["anticlockwise"])
     work.take(arm.samples(np.repeat(here[None], 900, axis=0), 0.0))
     work.accept()
-    work.take(arm.samples(arm.turn(here, [0]), 10.0))
-    work.accept()
-    work.forget()
+    for k in range(4):
+        work.take(arm.samples(arm.turn(here, [k]), 10.0 + 20.0 * k))
+        work.accept()
+        work.forget()
     found = work.take(arm.samples(arm.turn(here, [0]), 100.0))
     assert isinstance(found, Way)
     assert found.why_not is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
@@ -193,3 +194,36 @@ def test_a_ball_that_was_not_seated_stands_out() -> None:
             if isinstance(event, Happened) and event.times is not None:
                 assert (event.times > 5.0) == (number == missed), (number, event)
     assert missed is not None
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_an_arm_whose_zeros_are_by_eye_is_found_all_the_same(seed: int) -> None:
+    """Zeros off by 8° (1σ) and lengths by 10 mm, said to be so: the artefact is not taken for moved while it stands, no
+    posture is suggested again and again, and the arm that comes out measures to its uncertainty."""
+    arm, spec = platinum_plan()
+    rng = np.random.default_rng(seed)
+    units, names = np.array(arm.parameter_units), arm.parameter_names
+    off = np.where(units == "mm", 10.0, np.radians(8.0)) * rng.standard_normal(len(units))
+    off[[unit != "mm" and "theta" not in name for name, unit in zip(names, units, strict=True)]] *= 0.1
+    off[[any(fnmatch(name, pattern) for pattern in spec.hold) for name in names]] = 0.0
+    spec = replace(spec, known_length_mm=10.0, known_angle_rad=np.radians(8.0))
+    assert spec.travel_rad is not None
+    hand = Hand(arm.with_parameters(arm.core.parameters + off), spec, spec.travel_rad, rng)
+    session = session_of(arm, hand)
+    for _ in range(26):
+        expected = session.meter().next
+        first = hand.bar_mm is None
+        assert hand.follow(expected)
+        (event,) = played(session)
+        if isinstance(event, Happened):
+            assert event.touch.feature == expected.feature
+            assert event.moved == (not expected.here and not first)
+    rms = float(np.sqrt((length_errors(hand.truth, session.arm_now, session) ** 2).mean()))
+    assert rms < 2.0 * session.meter().worth.u_mm < 0.1
+
+
+def test_signs_that_nobody_knows_are_refused() -> None:
+    arm, hand = hand_of(1)
+    joints = [replace(joint, sign=0) if k in (1, 3) else joint for k, joint in enumerate(arm.joints)]
+    with pytest.raises(ulna.UlnaInputError, match="sign = 0 of joint 2, 4"):
+        session_of(replace(arm, joints=tuple(joints)), hand)

@@ -39,3 +39,18 @@ def one_of(option: str, value: str, known: tuple[str, ...]) -> None:
             f"option {option}: got '{value}', expected {', '.join(known[:-1])} or {known[-1]}."
             + (hint if "Did you mean" in hint else " Correct it.")
         )
+
+
+def numbers(option: str, value: str) -> tuple[float, ...]:
+    """Of a list with commas. Raises UlnaInputError."""
+    import math
+
+    from ulna.ground.errors import UlnaInputError
+
+    try:
+        found = tuple(float(each) for each in value.split(","))
+    except ValueError:
+        found = ()
+    if not found or not all(math.isfinite(each) for each in found):
+        raise UlnaInputError(f"option {option}: got '{value}', expected numbers with commas between them. Correct it.")
+    return found

@@ -18,7 +18,7 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.labels import Labels
 from ulna.artefacts.readings import Readings
-from ulna.ground.arrays import F64, I64
+from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
 from ulna.live.at_hand import AtHand
 from ulna.live.running import RunningFit, SoFar
@@ -43,6 +43,8 @@ WORTH_MOVING = 1.2
 LOOKED_AHEAD = 300
 """Candidates by which the touches to a goal are counted, and the most places that are looked ahead."""
 MOST_AHEAD = 25
+OTHER_RAD = np.radians(10.0)
+"""A posture is another where one joint at least is so far from where it was."""
 MOVED_MM = 1.0
 """The arm has moved so far that what touches are worth is looked at anew."""
 LOOKED_AT = 200
@@ -103,6 +105,7 @@ class Guide:
         self._tests: F64 | None = None
         self._at_mm: F64 | None = None
         self._at_hand = AtHand(fit, self.spec, self.mover, self._rng)
+        self._refused_rad: list[F64] = []
         self._planned: int | None = None
         """Number of the candidate for which the artefact was put where it stands."""
 
@@ -130,6 +133,10 @@ class Guide:
                 return here
         self._planned = best
         return self._in_new_place(best, 0, float(gains[best]) / total)
+
+    def refused(self, suggestion: Suggestion) -> None:
+        """Whoever followed it came to a posture that was touched before: it is not suggested again."""
+        self._refused_rad.append(suggestion.q_rad)
 
     def touches_more(self, so_far: SoFar, goal_u_mm: float) -> int | None:
         """About how many touches to an uncertainty of a length, each place the best of some: None where it is
@@ -222,6 +229,8 @@ class Guide:
         import ulna._core as _core
 
         points_mm, q_rad, feature = self._at_hand.postures(own)
+        others = _others(q_rad, [*(touch.q_rad for touch in own), *self._refused_rad])
+        q_rad, feature = q_rad[others], feature[others]
         if not len(q_rad):
             return None
         known = self._fit.without(self.spec.artefact.name, own[0].standing)
@@ -293,6 +302,14 @@ class Guide:
         if not more:
             return np.ascontiguousarray(rows)
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], more))], axis=-1)
+
+
+def _others(q_rad: F64, taken_rad: Sequence[F64]) -> Bool:
+    """(N,) whether a posture is another than each that was taken: the same once more tells hardly anything, whatever
+    the rows of an arm that is little known say."""
+    off = np.abs(np.remainder(q_rad[:, None] - np.array(taken_rad) + np.pi, 2.0 * np.pi) - np.pi)
+    others: Bool = (off.max(axis=2) >= OTHER_RAD).all(axis=1)
+    return others
 
 
 def _with(many: Readings, count: int, q_rad: F64, feature: I64) -> Readings:

@@ -18,7 +18,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import DOUBTFUL, Fault
 from ulna.live.guide import Guide, Suggestion
 from ulna.live.journal import Journal
-from ulna.live.places import Told, tell
+from ulna.live.places import Expected, Tip, Told, tell
 from ulna.live.postures import travel_of
 from ulna.live.resting import Rests
 from ulna.live.ring import Ring
@@ -70,6 +70,21 @@ class Happened:
 Event = Fault | Refused | Happened
 
 
+def _check_signs(arm: Arm) -> None:
+    """Raises UlnaInputError where nobody knows which way an encoder counts: the tip would be anywhere."""
+    unknown = ", ".join(str(k) for k, joint in enumerate(arm.joints, start=1) if joint.sign == 0)
+    if unknown:
+        raise UlnaInputError(
+            f"arm '{arm.name}': sign = 0 of joint {unknown}: which way it counts is not known, and where the tip is "
+            "follows from it; expected 1 or -1. Find it with ulna live commission and --zeros posture, or calibrate "
+            "once from a table of readings (ulna new)."
+        )
+
+
+def _options(spec: PlanSpec) -> FitOptions:
+    return FitOptions(hold=list(spec.hold), known_length_mm=spec.known_length_mm, known_angle_rad=spec.known_angle_rad)
+
+
 class Session:
     """Touches of one artefact by one arm.
 
@@ -95,10 +110,11 @@ class Session:
                 f"{stream.source.hello.device}: {channels} channels are mapped to joints, arm '{arm.name}' has "
                 f"{arm.n}; expected one for each. Say which they are: key 'map.channels' of a source file."
             )
+        _check_signs(arm)
         self.arm, self.spec, self.stream, self.journal = arm, spec, stream, journal
         self.goal_u_mm, self.by_itself, self.keep_all = goal_u_mm, by_itself, keep_all
         noise = Noise(spec.encoder_rad, spec.seat_mm or None)
-        self.fit = RunningFit(arm, [spec.artefact], noise, FitOptions(hold=list(spec.hold)))
+        self.fit = RunningFit(arm, [spec.artefact], noise, _options(spec))
         self.guide = Guide(self.fit, spec)
         self.determinable = self.guide.determinable
         self.place = 0
@@ -222,10 +238,13 @@ class Session:
             return Refused(
                 "the angles are in doubt since a fault of the stream: check the arm, then say they are right"
             )
-        expected = None if self._suggestion is None else self._suggestion.feature
-        told = tell(self.arm_now, self.spec.artefact, self._own(), self._tip_mm(found.q_rad), expected)
+        next_one = self._suggestion
+        expected = None if next_one is None else Expected(next_one.feature, next_one.here)
+        told = tell(self.fit, self.spec.artefact, self._own(), Tip(found.q_rad, self._probe), expected)
         again = self._again(found, told)
         if again is not None:
+            if self._suggestion is not None:
+                self.guide.refused(self._suggestion)
             return Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
         self.place = self.place + 1 if told.moved else max(self.place, 1)
         touch = self._touch(found, told.feature)

@@ -17,6 +17,7 @@ from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
 from ulna.planning.spec import Criterion, PlanSpec
 from ulna.planning.within import Within
+from ulna.study.data import FitOptions
 from ulna.study.study import Study
 
 WHAT = 'a plan file (TOML, format = "ulna-plan/1")'
@@ -51,6 +52,10 @@ class PlanTable(Strict):
     probe: str | None = None
     taken: str | None = None
     """Path of a study whose readings the plan completes, relative to this file."""
+    known_length: Positive | None = None
+    """By how much lengths of the arm file may be off (1 mm), a standard deviation; for `ulna live touch`."""
+    known_angle: Positive | None = None
+    """The same of angles (0.01 rad)."""
     test_length: Positive | None = None
     """Of the bars for which length uncertainty is judged."""
     trials: Annotated[int, Field(ge=0, le=100_000)] = 200
@@ -114,6 +119,7 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
     study = None if table.taken is None else Study.load(path.parent / table.taken)
     files = [path, *(each.path for each in place.files)]
     files += [] if study is None else [file.path for file in study.files]
+    usual = FitOptions()
     return PlanSpec(
         artefact=artefact,
         encoder_rad=encoder_of(file.noise.encoder, arm, units, path),
@@ -126,6 +132,8 @@ def load_plan_spec(path: Path, arm: Arm) -> PlanSpec:
         hold=list(table.hold),
         probe=table.probe,
         taken=study,
+        known_length_mm=usual.known_length_mm if table.known_length is None else table.known_length * units.mm,
+        known_angle_rad=usual.known_angle_rad if table.known_angle is None else table.known_angle * units.rad,
         test_mm=None if table.test_length is None else table.test_length * units.mm,
         travel_rad=travel_of(file.travel, arm, units, path),
         volume_mm=volume_of(file.volume, units, path),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from ulna.artefacts.kinds import kind_of
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.errors import UlnaInputError
 from ulna.simulation.study_files import artefact_table, features_file
+from ulna.study.data import FitOptions
 from ulna.study.study import Study
 
 STANDS = 12
@@ -22,7 +24,17 @@ ABOUT_BAR = 0.4
 ENCODER, SEAT = "5e-6", "0.01"
 
 
-def plan_toml(arm: Arm, study: Study | None, folder: Path) -> str:
+@dataclass(frozen=True)
+class Found:
+    """What was found of an arm before anybody measured with it."""
+
+    encoder_rad: tuple[float, ...]
+    """Standard deviation of each encoder."""
+    known_angle_rad: float | None
+    """By how much angles of the arm file may be off; None: as those of a drawing."""
+
+
+def plan_toml(arm: Arm, study: Study | None, folder: Path, found: Found | None = None) -> str:
     """The text of a plan file in a folder; what is not known stands behind '#' or is marked as an example. Raises
     UlnaInputError for a study that does not fit."""
     probe = next(iter(arm.probes))
@@ -33,7 +45,7 @@ def plan_toml(arm: Arm, study: Study | None, folder: Path) -> str:
         'format = "ulna-plan/1"',
         'units = { length = "mm", angle = "rad" }',
         *_artefact(arm, study, reach_mm, folder),
-        *_noise(arm, study),
+        *_noise(arm, study, found),
         *_travel(arm, study),
         "",
         "[within] # where a person can put it, mm: heights above the table at z = table, nothing nearer to the axis",
@@ -50,7 +62,22 @@ def plan_toml(arm: Arm, study: Study | None, folder: Path) -> str:
         lines.append(f"probe = {toml_value(probe)} # or {', '.join(list(arm.probes)[1:])}")
     hold = [] if study is None else list(study.fit.hold)
     lines.append(f"hold = {toml_value(hold)}" if hold else '# hold = ["joint.1.*"] # parameters that are not fitted')
+    lines += _known(study, found)
     return "\n".join(lines) + "\n"
+
+
+def _known(study: Study | None, found: Found | None) -> list[str]:
+    """What the arm file is known by; nothing where that is as usual."""
+    usual = FitOptions()
+    fit = usual if study is None else study.fit
+    angle_rad = fit.known_angle_rad if found is None else found.known_angle_rad or usual.known_angle_rad
+    stated = [("known_length", fit.known_length_mm, usual.known_length_mm, "mm, lengths"),
+              ("known_angle", angle_rad, usual.known_angle_rad, "rad, angles")]  # fmt: skip
+    return [
+        f"{key} = {value:.2g} # {what} of the arm file may be off by so much (standard deviation)"
+        for key, value, as_usual, what in stated
+        if value != as_usual
+    ]
 
 
 def _artefact(arm: Arm, study: Study | None, reach_mm: float, folder: Path) -> list[str]:
@@ -91,11 +118,13 @@ def _told(artefact: Artefact, table: dict[str, Any], study: Study, folder: Path)
     return [(key, toml_value(value)) for key, value in table.items()]
 
 
-def _noise(arm: Arm, study: Study | None) -> list[str]:
+def _noise(arm: Arm, study: Study | None, found: Found | None) -> list[str]:
     noise = None if study is None else study.noise
     counts = [joint.counts_per_turn for joint in arm.joints]
     if noise is not None and noise.encoder_rad is not None:
         encoder = toml_value(noise.encoder_rad.tolist()) + " # as the study has it"
+    elif found is not None:
+        encoder = toml_value([float(f"{each:.3g}") for each in found.encoder_rad]) + " # rad, as found held still"
     elif all(counts):
         # a count is rounded: uniform over its width
         steps = [float(f"{2.0 * np.pi / float(count or 1.0) / np.sqrt(12.0):.3g}") for count in counts]

@@ -43,6 +43,10 @@ class PlanSpec:
     """None: the arm's only one."""
     taken: Study | None = None
     """Readings that were taken already, which the plan completes."""
+    known_length_mm: float = 1.0
+    """By how much lengths of the arm may be off that touching begins with: a standard deviation."""
+    known_angle_rad: float = 0.01
+    """The same of its angles."""
     test_mm: float | None = None
     """Length of the test bars; None: the largest distance between features, of a seat half the arm's reach."""
     travel_rad: F64 | None = None

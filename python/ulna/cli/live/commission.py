@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from ulna.cli.live.options import Source
-from ulna.cli.options import Force, Json, one_of
+from ulna.cli.options import Force, Json, numbers, one_of
 from ulna.cli.running import guard
 
 UNITS = ("deg", "rad", "counts")
 SIGNS = ("turned", "unknown")
+ZEROS = ("posture", "unknown")
 
 
 @guard
@@ -46,6 +47,22 @@ def commission(
     signs: Annotated[
         str, typer.Option("--signs", metavar="WORD", help="turned: found by turning; unknown: left to a calibration.")
     ] = "turned",
+    zeros: Annotated[
+        str | None,
+        typer.Option(
+            "--zeros",
+            metavar="WORD",
+            help="posture: from one taken by eye; unknown: left to a calibration. Without --arm unknown.",
+            show_default="posture",
+        ),
+    ] = None,
+    posture: Annotated[
+        str | None,
+        typer.Option("--posture", metavar="DEG,…", help="That posture, in encoder angles as drawn. Else one is found."),
+    ] = None,
+    hold: Annotated[
+        float, typer.Option("--hold", metavar="S", min=1.0, max=3600.0, help="How long it is held; 60 shows drift.")
+    ] = 4.0,
     wait: Annotated[
         float, typer.Option("--wait", metavar="S", min=1.0, max=3600.0, help="How long a joint is waited for.")
     ] = 30.0,
@@ -58,7 +75,7 @@ def commission(
     """Find out, arm in hand, which channel is which joint, which way it counts, how far it goes and how it errs.
 
     Hold it still, then turn one joint after the other, as it is asked for. What is found is shown with its numbers and
-    taken when you say so. Zero offsets are left to the calibration.
+    taken when you say so. Zero offsets are known by eye then, from a posture that is said in words.
 
     Example: [bold]ulna live commission serial:/dev/ttyACM0 --joints 6 -o my-arm[/bold]
     """
@@ -67,7 +84,11 @@ def commission(
     if unit is not None:
         one_of("--unit", unit, UNITS)
     one_of("--signs", signs, SIGNS)
-    asked = Asked(source, out, joints, arm, reach, unit, tuple(counts_per_turn or ()), signs, wait, yes, force)
+    if zeros is not None:
+        one_of("--zeros", zeros, ZEROS)
+    stated = None if posture is None else numbers("--posture", posture)
+    counts = tuple(counts_per_turn or ())
+    asked = Asked(source, out, joints, arm, reach, unit, counts, signs, zeros, stated, hold, wait, yes, force)
     commissioned(asked, as_json)
 
 

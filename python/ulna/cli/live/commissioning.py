@@ -24,12 +24,15 @@ from ulna.live.commission.counting import STATED
 from ulna.live.commission.findings import FULL_TURN, Findings
 from ulna.live.commission.geometry import geometry, ways
 from ulna.live.commission.holding import Holding
+from ulna.live.commission.posture import Posture, posture
+from ulna.live.commission.standing import Stood
 from ulna.live.commission.turning import Turned
 from ulna.live.commission.writing import FILES, noise_text, write
 from ulna.live.faults import RESET
 from ulna.live.samples import Samples
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream, streaming
+from ulna.proposals.arms import Drawn
 
 TRIES = 3
 """Of a step that nobody is asked about."""
@@ -48,6 +51,9 @@ class Asked:
     unit: str | None
     counts_per_turn: tuple[float, ...]
     signs: str
+    zeros: str | None
+    posture_deg: tuple[float, ...] | None
+    hold_s: float
     wait_s: float
     yes: bool
     force: bool
@@ -63,11 +69,13 @@ def commissioned(asked: Asked, as_json: bool) -> None:
     check_output(asked.out, FILES, asked.force)
     drawn = geometry(asked.arm, asked.joints, asked.reach_mm)
     how = ways(drawn, "" if asked.arm is None else asked.arm.name) if asked.signs == "turned" else []
+    stands = _posture(drawn, asked)
     with streaming(asked.source, angles=False) as stream:
         table = stream.stated.file.map
         if asked.unit is not None:
             table = table.model_copy(update={"unit": asked.unit})
-        work = Commissioning(stream.source.hello, drawn.arm.n, table, ways=how, wait_s=asked.wait_s)
+        hello, joints = stream.source.hello, drawn.arm.n
+        work = Commissioning(hello, joints, table, ways=how, posture=stands, wait_s=asked.wait_s, hold_s=asked.hold_s)
         _Going(stream, work, asked.yes).go()
         stated = stream.stated
     findings = _whole(work.findings(), asked)
@@ -78,7 +86,24 @@ def commissioned(asked: Asked, as_json: bool) -> None:
         output.print_renderable(*findings_report(findings))
         print(noise_text(findings))
     output.say(f"Written: {', '.join(str(asked.out / each) for each in FILES)}")
-    output.say(f"Next: ulna live watch {asked.out / 'source.toml'}")
+    arm, plan, source = (asked.out / name for name in ("arm.toml", "plan.toml", "source.toml"))
+    output.say(f"Next: put the length of your bar into {plan}, then ulna live touch {arm} {plan} {source} -o touched")
+
+
+def _posture(drawn: Drawn, asked: Asked) -> Posture | None:
+    """The posture that is asked for. Raises UlnaInputError where none can be said."""
+    zeros = asked.zeros or ("unknown" if drawn.guessed or asked.signs == "unknown" else "posture")
+    if zeros == "unknown" and asked.posture_deg is not None:
+        raise UlnaInputError("--posture: a posture is given, but --zeros unknown. Leave one of them out.")
+    if zeros == "unknown":
+        return None
+    if asked.signs == "unknown":
+        raise UlnaInputError(
+            "--zeros: got posture with --signs unknown; expected signs that are found too, as a zero means nothing "
+            "without them. Leave one of them out."
+        )
+    stated = None if asked.posture_deg is None else [math.radians(each) for each in asked.posture_deg]
+    return posture(drawn.arm, stated)
 
 
 class _Going:
@@ -94,6 +119,8 @@ class _Going:
         tries = 0
         while (step := self._work.step) is not None:
             _print(f"\n{step.sentence}" if not tries else step.sentence)
+            for line in step.lines:
+                _print(f"    {line}")
             found = self._found(step.sentence)
             for line in found.said:
                 _print(f"  {for_people(line)}")
@@ -119,7 +146,7 @@ class _Going:
             return tries
         if isinstance(found, Holding):
             raise UlnaInputError(f"{found.why_not} Nothing was written. Begin again when the arm is held still.")
-        _print(f"  Joint {found.joint + 1} is left out.")
+        _print("  It is left out." if isinstance(found, Stood) else f"  Joint {found.joint + 1} is left out.")
         work.skip()
         return 0
 

@@ -6,7 +6,7 @@ No terminal is in here: a command, a page or a recording drives it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,8 +14,10 @@ import numpy as np
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.live.commission.counting import Known
-from ulna.live.commission.findings import Findings, found_joint
+from ulna.live.commission.findings import Findings, FoundJoint, found_joint
 from ulna.live.commission.holding import Held, Holding, held
+from ulna.live.commission.posture import Posture
+from ulna.live.commission.standing import Stood, stood
 from ulna.live.commission.turning import MOVED_TURNS, Turned, Way, travels, turned, way
 from ulna.live.samples import Hello, Samples
 from ulna.live.tables import MapTable
@@ -30,8 +32,8 @@ REST_TURNS = 1.0 / 360.0
 """A hand that holds a joint moves it by less, in that time."""
 _NOISES, _STEPS = 8.0, 4.0
 
-Kind = Literal["hold", "turn", "way"]
-Found = Holding | Turned | Way
+Kind = Literal["hold", "turn", "posture", "way"]
+Found = Holding | Turned | Stood | Way
 
 
 @dataclass(frozen=True)
@@ -40,8 +42,10 @@ class Step:
 
     kind: Kind
     joint: int | None
-    """From 0; None of holding still."""
+    """From 0; None of what all joints do."""
     sentence: str
+    lines: tuple[str, ...] = ()
+    """More of it, a line each."""
 
 
 class Commissioning:
@@ -55,12 +59,14 @@ class Commissioning:
         table: MapTable | None = None,
         *,
         ways: Sequence[str | None] = (),
+        posture: Posture | None = None,
         wait_s: float = 30.0,
         hold_s: float = HOLD_S,
         rest_s: float = REST_S,
     ) -> None:
         """table: what is known of the channels; ways: of each joint, how it is turned so that it counts as positive, in
-        words; None: nobody can say. wait_s: how long a joint is waited for; hold_s: how long the arm is held still;
+        words; None: nobody can say; posture: one that the arm is brought to, from which the ways are, in place of
+        `ways`. wait_s: how long a joint is waited for; hold_s: how long the arm is held still;
         rest_s: a joint that rests so long has been turned.
 
         Raises UlnaInputError where there are fewer
@@ -85,17 +91,19 @@ class Commissioning:
         self.joints = joints
         self.holding: Holding | None = None
         self.turned: dict[int, Turned] = {}
+        self.stood: Stood | None = None
+        self.posture = posture
         self.signs: dict[int, int] = {}
         self.endless: set[int] = set()
         """Joints of which somebody says that they turn on and on."""
         self._columns = [hello.channels.index(name) for name in names]
-        self._ways = [*ways, *[None] * joints][:joints]
+        self._ways = [*(ways if posture is None else posture.ways), *[None] * joints][:joints]
         self._wait_s, self._hold_s, self._rest_s = wait_s, hold_s, rest_s
-        self._steps: list[tuple[Kind, int | None]] = [("hold", None)]
-        for k in range(joints):
-            self._steps.append(("turn", k))
-            if self._ways[k] is not None:
-                self._steps.append(("way", k))
+        self._steps: list[tuple[Kind, int | None]] = [("hold", None), *(("turn", k) for k in range(joints))]
+        if posture is not None:
+            self._steps.append(("posture", None))
+        # from the last joint on: what was turned beyond a joint leaves its axis where it was
+        self._steps += [("way", k) for k in reversed(range(joints)) if self._ways[k] is not None]
         self._found: Found | None = None
         self._left: list[tuple[F64, F64]] = []
         self._begin()
@@ -114,11 +122,15 @@ class Commissioning:
         kind, joint = self._steps[0]
         if kind == "hold":
             return Step(kind, joint, f"Hold the arm still, or lay it down, for {self._hold_s:.0f} s.")
+        if kind == "posture":
+            assert self.posture is not None
+            said = "Bring the arm into this posture, by eye, and let it rest there:"
+            return Step(kind, joint, said, self.posture.words)
         assert joint is not None
         if kind == "turn":
             said = f"Turn only joint {joint + 1} (from the base), to and fro, up to its stops. Then let it rest."
             return Step(kind, joint, said)
-        return Step(kind, joint, f"Turn only joint {joint + 1} {self._ways[joint]}, by some 30°. Then let it rest.")
+        return Step(kind, joint, f"Turn only joint {joint + 1} {self._ways[joint]}, by some 30°, and leave it there.")
 
     def take(self, samples: Samples) -> Found | None:
         """What came; what was found where the step is done by that. More is not looked at until somebody has said what
@@ -152,6 +164,8 @@ class Commissioning:
                 self.known.joints &= np.array([each.role == "channel" for each in found.channels])
             case Turned():
                 self.turned[found.joint] = found
+            case Stood():
+                self.stood = found
             case Way():
                 self.signs[found.joint] = found.sign
         self._steps.pop(0)
@@ -166,7 +180,10 @@ class Commissioning:
         kind, joint = self._steps[0]
         if kind == "hold":
             raise ValueError("holding still cannot be skipped")
-        self._steps = [each for each in self._steps if each[1] != joint]
+        if kind == "posture":  # ways are from there
+            self._steps = [each for each in self._steps if each[0] == "turn"]
+        else:
+            self._steps = [each for each in self._steps if each[1] != joint or joint is None]
         self._begin()
 
     @property
@@ -188,14 +205,20 @@ class Commissioning:
                 "joints. Nothing was written. Turn it, or say how many joints there are with --joints."
             )
         channels = {each.name: each for each in self.holding.channels}
-        joints = tuple(
-            found_joint(self.turned[k], channels, self.known, self.signs.get(k, 0), k in self.endless)
-            for k in range(self.joints)
-        )
+        joints = tuple(self._joint(k, channels) for k in range(self.joints))
         used = {joint.channel for joint in joints}
         unused = tuple(self._unused(each) for each in self.holding.channels if each.name not in used)
         unit, why, guessed = self.known.unit()
         return Findings(joints, unit, why, guessed, self.holding, unused)
+
+    def _joint(self, joint: int, channels: dict[str, Held]) -> FoundJoint:
+        turned, sign = self.turned[joint], self.signs.get(joint, 0)
+        assert turned.channel is not None
+        found = found_joint(turned, channels, self.known, sign, joint in self.endless)
+        if self.stood is None or self.posture is None:
+            return found
+        at = self.stood.at[turned.channel], float(self.posture.turned_rad[joint])
+        return replace(found, at_posture=at[0], turned_rad=at[1])
 
     def _unused(self, channel: Held) -> str:
         if channel.role != "channel":
@@ -208,13 +231,17 @@ class Commissioning:
         took_s = float(t_s[-1] - t_s[0])
         if kind == "hold":
             return held(t_s, np.concatenate(self._raw), self.known) if took_s >= self._hold_s else None
-        assert joint is not None
         raw = np.concatenate(self._raw)
         self._moved = self._moved or bool((travels(raw, self.known)[1] >= MOVED_TURNS).any())
         if not self._moved and took_s < self._wait_s:
             return None
-        if self._moved and not (took_s >= self._rest_s and self._rests(raw[t_s >= t_s[-1] - self._rest_s])):
+        resting = t_s >= t_s[-1] - self._rest_s
+        if self._moved and not (took_s >= self._rest_s and self._rests(raw[resting])):
             return None
+        if kind == "posture":
+            channels = {k: found.name for k, found in self.turned.items()}
+            return stood(raw, self.known, int(resting.sum()), channels)
+        assert joint is not None
         if kind == "turn":
             taken = {found.channel: each for each, found in self.turned.items() if found.channel is not None}
             return turned(joint, raw, self.known, taken)

@@ -40,6 +40,15 @@ class FoundJoint:
     endless: bool
     along: tuple[tuple[str, float], ...]
     """Channels that hang on it, and how much they turn with it."""
+    at_posture: float | None = None
+    """What it read in a posture taken by eye, as sent; None: there was none."""
+    turned_rad: float = 0.0
+    """How far the joint is turned in that posture, as drawn."""
+
+    @property
+    def zeroed(self) -> bool:
+        """Whether its zero is known, by eye: from the posture and from which way it counts."""
+        return self.at_posture is not None and self.sign != 0
 
 
 def found_joint(turned: Turned, held: Mapping[str, Held], known: Known, sign: int, endless: bool) -> FoundJoint:
@@ -118,6 +127,19 @@ class Findings:
         """The lowest and highest angle of an encoder."""
         found = self.joints[joint]
         return round(self.rad(joint, found.low), 6), round(self.rad(joint, found.high), 6)
+
+    def theta0_rad(self, joint: int) -> float | None:
+        """Its zero offset (`turn = sign * encoder - theta0`), in ±π; None where it is not known."""
+        found = self.joints[joint]
+        if not found.zeroed:
+            return None
+        assert found.at_posture is not None
+        return math.remainder(found.sign * self.rad(joint, found.at_posture) - found.turned_rad, 2.0 * math.pi)
+
+    @property
+    def zeroed(self) -> bool:
+        """Whether all zeros are known, by eye."""
+        return all(joint.zeroed for joint in self.joints)
 
     @property
     def remarks(self) -> list[str]:

@@ -8,22 +8,31 @@ from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote, unquote
 
+import numpy as np
+
 from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
+from ulna.arm.frames.links import moved
+from ulna.arm.frames.rigid import pose, turn
 from ulna.formats.output import output_folder, refuse_inputs
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.live.commission.findings import Findings
 from ulna.live.mapping import TURN
 from ulna.live.source_file import StatedSource, load_source
+from ulna.planning.making import Found, plan_toml
 from ulna.proposals.arms import Drawn
 
-FILES = ("source.toml", "arm.toml", "noise.toml")
+FILES = ("source.toml", "arm.toml", "noise.toml", "plan.toml")
+BY_EYE_DEG = 5.0
+"""A posture that is taken by eye."""
+ZEROS_BY_EYE = "Zero offsets (theta0) are by eye, from one posture: some degrees. The calibration finds them."
+ZEROS_UNKNOWN = 'Zero offsets (theta0) were not: start the calibration with [fit] start = "search".'
 _PATHS = ("file", "bag", "virtual")
 """Urls that begin with a path."""
 
 
 def write(findings: Findings, stated: StatedSource, base: Drawn, folder: Path, force: bool = False) -> None:
-    """source.toml, arm.toml and noise.toml into a folder. base: the geometry.
+    """source.toml, arm.toml, noise.toml and plan.toml into a folder. base: the geometry.
 
     Raises UlnaInputError where they exist and `force` is not given, or where something is not known that they need.
     """
@@ -34,7 +43,8 @@ def write(findings: Findings, stated: StatedSource, base: Drawn, folder: Path, f
         (staging / "arm.toml").write_text(arm_text(findings, base), encoding="utf-8")
         (staging / "noise.toml").write_text(noise_text(findings), encoding="utf-8")
         load_source(staging / "source.toml")
-        Arm.load(staging / "arm.toml")
+        arm = Arm.load(staging / "arm.toml")
+        (staging / "plan.toml").write_text(plan_text(findings, arm, folder), encoding="utf-8")
 
 
 def source_text(findings: Findings, stated: StatedSource, folder: Path) -> str:
@@ -66,10 +76,21 @@ def source_text(findings: Findings, stated: StatedSource, folder: Path) -> str:
 
 
 def commissioned(findings: Findings, base: Arm) -> Arm:
-    """The arm with what was found: signs, limits, counts per turn. Geometry and zero offsets stay those of `base`."""
+    """The arm with what was found: signs, limits, counts per turn, zero offsets where it was put in a posture.
+
+    The rest of its geometry stays that of `base`.
+    """
+    zeros = [
+        joint.theta0_rad if (zero := findings.theta0_rad(k)) is None else round(zero, 6)
+        for k, joint in enumerate(base.joints)
+    ]
+    probes = base.probes
+    if not base.full_last_link:  # its zero is the direction in which the probe stands off the last axis
+        probes, zeros[-1] = moved(probes, pose(turn("z", -zeros[-1]), np.zeros(3))), 0.0
     joints = [
         replace(
             joint,
+            theta0_rad=zeros[k],
             sign=found.sign,
             limits_rad=None if found.endless else findings.limits_rad(k),
             endless=found.endless,
@@ -77,7 +98,7 @@ def commissioned(findings: Findings, base: Arm) -> Arm:
         )
         for k, (joint, found) in enumerate(zip(base.joints, findings.joints, strict=True))
     ]
-    return replace(base, joints=tuple(joints), uncertainty=None)
+    return replace(base, joints=tuple(joints), probes=probes, uncertainty=None)
 
 
 def arm_text(findings: Findings, base: Drawn) -> str:
@@ -86,10 +107,17 @@ def arm_text(findings: Findings, base: Drawn) -> str:
     if base.guessed:
         lines.append("Lengths and twists are a first guess: put yours in, or let the calibration find what they are.")
     lines.append("Signs, limits and counts per turn were found with the arm in the hand.")
-    lines.append('Zero offsets (theta0) were not: start the calibration with [fit] start = "search".')
+    lines.append(ZEROS_BY_EYE if findings.zeroed else ZEROS_UNKNOWN)
     if not all(joint.sign for joint in findings.joints):
         lines.append("sign = 0: nobody could say which way the encoder counts; the calibration finds it.")
     return "".join(_comment(line) + "\n" for line in lines) + "\n" + arm_toml(commissioned(findings, base.arm))
+
+
+def plan_text(findings: Findings, arm: Arm, folder: Path) -> str:
+    """A plan to touch a bar by, whose length is to be filled in."""
+    noise_rad = tuple(findings.noise_rad(k) for k in range(len(findings.joints)))
+    by_eye_rad = math.radians(BY_EYE_DEG) if findings.zeroed else None
+    return plan_toml(arm, None, folder, Found(noise_rad, by_eye_rad))
 
 
 def noise_text(findings: Findings) -> str:
@@ -104,11 +132,19 @@ def noise_text(findings: Findings) -> str:
         f"encoder = {toml_value(noise)}",
         _comment("seat = 0.01    (of a touch, per coordinate; not found here: put yours in)"),
         "",
-        _comment("In a study, as the zeros of the encoders are not known:"),
-        _comment("[fit]"),
-        _comment('start = "search"'),
+        *map(_comment, _in_a_study(findings)),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _in_a_study(findings: Findings) -> list[str]:
+    if findings.zeroed:
+        return [
+            "In a study, as the zeros of the encoders are known by eye:",
+            "[fit]",
+            f"known_angle = {math.radians(BY_EYE_DEG):.2g}    ({BY_EYE_DEG:g} degrees)",
+        ]
+    return ["In a study, as the zeros of the encoders are not known:", "[fit]", 'start = "search"']
 
 
 def _whole(counts: float | None) -> float | int | None:
