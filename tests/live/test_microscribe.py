@@ -17,7 +17,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.commission.commissioning import Commissioning
 from ulna.live.commission.geometry import geometry, ways
 from ulna.live.faults import ENDED, GARBAGE
-from ulna.live.journal import Journal
+from ulna.live.journal import Journal, Reading
 from ulna.live.mapping import Mapping
 from ulna.live.microscribe.replies import Replies
 from ulna.live.registry import device_arm, open_wire, opened
@@ -156,15 +156,15 @@ def test_pulled_while_it_greets() -> None:
 @pytest.mark.parametrize(
     ("device", "words"),
     [
-        (Device(answers=lambda asked: b"" if asked == b"IMMC" else None), r"the greeting in 0\.6 s\. Expected"),
+        (Device(answers=lambda asked: b"" if asked == b"IMMC" else None), r"the greeting in 1\.5 s\. Expected"),
         (
             Device(answers=lambda asked: b"start\n" if asked == b"IMMC" else None),
             r"\d+ bytes came that are none: 'start\\nst",
         ),
-        (Device(answers=lambda asked: b"" if asked == b"BEGIN" else None), "when asked for BEGIN in 1 s .nothing came"),
+        (Device(answers=lambda asked: b"" if asked == b"BEGIN" else None), "when asked for BEGIN in 2 s .nothing came"),
         (Device(texts={0: b"PROBE"}), "says that it is 'PROBE'; expected 'MSCR'"),
         (Device(texts={0xCA: b"D\xffX"}), "said 44ff58.* of itself; expected a word"),
-        (Device(answers=lambda asked: b"\xcb123" if asked == b"\xcb" else None), "for its serial in 1 s .4 bytes"),
+        (Device(answers=lambda asked: b"\xcb123" if asked == b"\xcb" else None), "for its serial in 2 s .4 bytes"),
         (Device(maxima=(16383, 9999, 8191, 4095, 4095, 0)), "count to 16383, 9999, .*; expected a power of two"),
         (Device(maxima=(0,) * 6), "count to 0, 0"),
         (Device(maxima=(16383, 0, 8191, 4095, 4095, 0)), "expected a power of two"),
@@ -172,7 +172,7 @@ def test_pulled_while_it_greets() -> None:
 )  # fmt: skip
 def test_what_is_no_microscribe_is_said(device: Device, words: str) -> None:
     with plugged(device) as line:
-        with pytest.raises(UlnaInputError, match=words), opened(f"microscribe:{line.path}?wait=0.6"):
+        with pytest.raises(UlnaInputError, match=words), opened(f"microscribe:{line.path}?wait=1.5"):
             pass
         assert device.homed == 0
 
@@ -221,6 +221,8 @@ def test_other_counts_than_the_device_says_are_refused(tmp_path: Path) -> None:
     assert Mapping(MapTable(counts_per_turn=[4096, 8192]), hello).turn.tolist() == [4096, 8192]
     with pytest.raises(UlnaInputError, match=r"got 4096\.0, but a double says 4096, 8192"):
         Mapping(MapTable(counts_per_turn=4096), hello)
+    with pytest.raises(UlnaInputError, match="got 'deg', but a double sends counts"):
+        Mapping(MapTable(unit="deg"), hello)
 
 
 def test_a_journal_keeps_what_the_device_says(tmp_path: Path) -> None:
@@ -237,6 +239,14 @@ def test_a_journal_keeps_what_the_device_says(tmp_path: Path) -> None:
         np.testing.assert_allclose(
             stream.read(5.0).q_rad[0], 2 * np.pi * (RAW[0] % COUNTS) / COUNTS, rtol=1e-15
         )  # fmt: skip
+
+
+@pytest.mark.parametrize("counts", [(0.5, 4096), (4096,), (True, 4096), (float("nan"), 4096)])
+def test_a_journal_that_says_nonsense_of_counts_is_damaged(counts: tuple[float, ...], tmp_path: Path) -> None:
+    with Journal.create(tmp_path / "run.journal", Hello(("q1", "q2"), "counts", "a double", None, counts)):
+        pass
+    with pytest.raises(UlnaInputError, match="head of the journal is not whole"):
+        Reading(tmp_path / "run.journal")
 
 
 def test_its_own_table_puts_the_tip_where_its_own_chain_does() -> None:

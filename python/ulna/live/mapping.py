@@ -37,6 +37,10 @@ class Mapping:
                 '"counts". Add it.'
             )
         told = hello.counts_of(names)
+        if told is not None and unit != "counts":
+            raise UlnaInputError(
+                f"{path}: key 'map.unit': got '{unit}', but {hello.device} sends counts. Leave it out, or correct it."
+            )
         counts = told if table.counts_per_turn is None else table.counts_per_turn
         if unit == "counts" and counts is None:
             raise UlnaInputError(f"{path}: key 'map.counts_per_turn' is missing; expected it with counts. Add it.")

@@ -26,7 +26,7 @@ _MAXIMA = struct.Struct(">BH8BB6H")
 """Buttons there are, last tick of the timer, eight analog inputs and their lowest bits, last count of six encoders."""
 _MOST_COUNTS = 1 << 14
 """An angle is sent in 14 bits."""
-_ANSWER_S, _QUIET_S = 1.0, 0.05
+_ANSWER_S, _QUIET_S = 2.0, 0.05
 _LONGEST_TEXT = 64
 
 
