@@ -1,4 +1,4 @@
-"""What poses of a calibrated arm come to: places, lengths, balls, planes, each value ± U (k = 2), or why it has none.
+"""What poses of a calibrated arm come to: places, lengths, balls, circles, planes, each value ± U (k = 2), or why not.
 
 As `ulna measure` and `ulna uncertainty` have it: GUM's law of propagation, by `ulna.uncertainties`. Lengths mm.
 """
@@ -73,7 +73,8 @@ class Calibrated:
         payload: str | None = None,
         inside: bool = False,
     ) -> None:
-        """encoder_u_rad: of each encoder, where it is known better than by the calibration. inside: balls are hollows.
+        """encoder_u_rad: of each encoder, where it is known better than by the calibration. inside: balls are hollows,
+        circles holes.
         Raises UlnaInputError for a probe that there is not, or a condition that nobody states."""
         self.arm, noise, self._stated_rad = _known(given)
         self.probe = list(self.arm.probes)[self.arm.probe_index(probe)]
@@ -137,7 +138,7 @@ class Calibrated:
             probe=self.probe,
             label=name,
             noise=self.noise,
-            inside=self._inside and kind == "ball",
+            inside=self._inside and measurand.diameter is not None,
             p=P,
             **self._said,
         )

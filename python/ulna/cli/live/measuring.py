@@ -24,7 +24,8 @@ def measure(
         typer.Option(
             "--feature",
             metavar="WORDS",
-            help="What touches become: point, length, ball, plane, distance; or of points: length p1 p2. Repeat it.",
+            help="What touches become: point, length, ball, circle, plane, distance; or of points: length p1 p2. "
+            "Repeat it.",
             show_default=False,
         ),
     ] = None,
@@ -33,7 +34,9 @@ def measure(
         str | None,
         typer.Option("--to", metavar="POINT", help="Show distances to this point (p1, …); else to the last."),
     ] = None,
-    inside: Annotated[bool, typer.Option("--inside", help="Balls are hollows, touched from within.")] = False,
+    inside: Annotated[
+        bool, typer.Option("--inside", help="Balls are hollows, circles are holes: touched from within.")
+    ] = False,
     temperature: Annotated[
         float | None, typer.Option("--temperature", metavar="C", help="Of the arm, °C, where its links grow with it.")
     ] = None,
