@@ -133,6 +133,7 @@ def notes(out: ReadOut) -> list[str]:
         found.append(
             "Points, and diameters, are of the centre of the probe's ball, whose size the arm file does not say."
         )
+    found += arm.remarks
     limits = out.limits
     if limits is not None and not limits.sees:
         found.append("At this rate and noise the slowest hand cannot be told from one that rests.")
