@@ -114,11 +114,11 @@ class Session:
 
     def feed(self, frames: Frames) -> Iterator[Event]:
         """What came, in order; what happened with it."""
-        for fault in frames.faults:
+        if any(fault.kind in DOUBTFUL for fault in frames.faults):
+            self._rests.forget()
+        for fault in frames.told:
             if self.journal is not None:
                 self.journal.event({"fault": fault.as_dict()})
-            if fault.kind in DOUBTFUL:
-                self._rests.forget()
             yield fault
         samples = frames.samples
         if not len(samples):
@@ -127,7 +127,7 @@ class Session:
             self.journal.samples(samples)
         self._ring.push(samples)
         for window in self._rests.windows(samples, frames.q_rad):
-            found = self._rests.ask() if window.button else self._rests.look(window)
+            found = self._rests.ask(window) if window.button else self._rests.look(window)
             if found is not None:
                 yield self._answer(found)
 
