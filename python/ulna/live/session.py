@@ -74,7 +74,7 @@ class Session:
     """Touches of one artefact by one arm.
 
     spec: what is touched, what the readings' noise is, where it can stand and what lengths the arm is for, as of a
-    plan.
+    plan. fit: what is fitted, as of a study; without it all that the plan does not hold.
     """
 
     def __init__(
@@ -84,6 +84,7 @@ class Session:
         stream: Stream,
         journal: Journal | None = None,
         *,
+        fit: FitOptions | None = None,
         goal_u_mm: float | None = None,
         by_itself: bool = True,
         keep_all: bool = False,
@@ -98,7 +99,7 @@ class Session:
         self.arm, self.spec, self.stream, self.journal = arm, spec, stream, journal
         self.goal_u_mm, self.by_itself, self.keep_all = goal_u_mm, by_itself, keep_all
         noise = Noise(spec.encoder_rad, spec.seat_mm or None)
-        self.fit = RunningFit(arm, [spec.artefact], noise, FitOptions(hold=list(spec.hold)))
+        self.fit = RunningFit(arm, [spec.artefact], noise, fit or FitOptions(hold=list(spec.hold)))
         self.guide = Guide(self.fit, spec)
         self.determinable = self.guide.determinable
         self.place = 0

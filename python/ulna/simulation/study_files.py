@@ -25,6 +25,8 @@ from ulna.study.study import Study
 
 #: keys of [fit] that are said as they are, where they are not as usual
 FIT_KEYS = ("hold", "free", "loss", "start", "extras", "harmonics", "judge_extras")
+KNOWN = {"known_length": "known_length_mm", "known_angle": "known_angle_rad"}
+"""Keys of [fit] with a unit, in the study's mm and rad, and their fields."""
 
 
 def names_for(artefacts: Iterable[Artefact]) -> list[str]:
@@ -65,6 +67,8 @@ def study_toml(study: Study, counts: bool) -> str:
     fit = {key: getattr(study.fit, key) for key in FIT_KEYS if getattr(study.fit, key) != getattr(usual, key)}
     if study.fit.auto:
         fit["extras"] = AUTO
+    other = {key: name for key, name in KNOWN.items() if getattr(study.fit, name) != getattr(usual, name)}
+    fit |= {key: getattr(study.fit, name) for key, name in other.items()}
     if fit:
         lines += _table("[fit]", fit)
     return "\n".join(lines) + "\n"

@@ -18,7 +18,10 @@ def touch(
         Path, typer.Argument(metavar="ARM", help="Where to begin: an arm file, or a result.", show_default=False)
     ],
     plan: Annotated[
-        Path, typer.Argument(metavar="PLAN", help="What is touched, and what for: a plan file.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="PLAN", help="What is touched, and what for: a plan file, or a study.", show_default=False
+        ),
     ],
     source: Source,
     out: Annotated[
@@ -30,6 +33,9 @@ def touch(
     ] = None,
     length: Annotated[
         float | None, typer.Option("--length", metavar="L", min=1e-3, help="That test length, mm; else the plan's.")
+    ] = None,
+    artefact: Annotated[
+        str | None, typer.Option("--artefact", metavar="NAME", help="Which, of a study with several.")
     ] = None,
     trigger: Annotated[
         str | None, typer.Option("--trigger", metavar="BY", help="key, button or still; else as the source file says.")
@@ -56,37 +62,34 @@ def touch(
 
     Example: [bold]ulna live touch arm.toml plan.toml source.toml -o evening --goal 0.04[/bold]
     """
-    from dataclasses import replace
-
     from ulna.arm.given import as_arm
     from ulna.cli import output
     from ulna.cli.live.at_the_arm import Bench
     from ulna.cli.options import one_of
     from ulna.live.ending import begin, write_result, write_study
+    from ulna.live.purpose import purpose_of
     from ulna.live.session import Session
     from ulna.live.stream import streaming
-    from ulna.planning.file import load_plan_spec
-    from ulna.planning.refusals import check
 
     if trigger is not None:
         one_of("--trigger", trigger, ("key", "button", "still"))
     nominal = as_arm(arm)
-    spec = load_plan_spec(plan, nominal)
-    if length is not None:
-        spec = replace(spec, test_mm=length)
-    check(nominal, spec)
+    purpose = purpose_of(plan, nominal, artefact, length)
+    for remark in purpose.remarks:
+        output.say(remark)
     with streaming(source) as stream:
         by = trigger or stream.stated.file.trigger.by
         session = Session(
             nominal,
-            spec,
+            purpose.spec,
             stream,
+            fit=purpose.fit,
             goal_u_mm=None if goal is None else 0.5 * goal,
             by_itself=by == "still",
             keep_all=whole,
         )
         stated = stream.stated.file.model_dump(mode="json", exclude_none=True)
-        head = {"source": stated, "arm": nominal.name, "artefact": spec.artefact.name}
+        head = {"source": stated, "arm": nominal.name, "artefact": purpose.spec.artefact.name}
         journal, known, cut = begin(out, stream.source.hello, **head)
         with journal:
             session.journal = journal
