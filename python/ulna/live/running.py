@@ -18,6 +18,7 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
+from ulna.calibration.identify import Identification, identify
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
@@ -68,6 +69,8 @@ class RunningFit:
         """All of them, the withdrawn ones too."""
         self.fitted: _core.Fitted | None = None
         """The last fit; None before the first."""
+        self.fresh = False
+        """Whether it ended, and none was tried since that did not."""
         self._parameters: F64 | None = None
         self._names: list[str] = []
         self._sigma: float | None = None
@@ -193,17 +196,30 @@ class RunningFit:
         rest = [each for each in self.counting() if (each.artefact, each.standing) != (artefact, standing)]
         return SoFar(len(rest), len(covariance), 0, [], covariance, triangle)
 
+    def tell(self) -> Identification:
+        """What the touches that count determine, with why and what to do where they do not: of the last fit, or at the
+        arm where it began. Raises UlnaInputError where there are none."""
+        if self.fitted is not None and self.fresh:
+            return Identification.from_core(self.fitted.identifiability)
+        return identify(self.study())
+
+    def could_tell(self, readings: Readings) -> Identification:
+        """The same of any readings of an artefact, at the arm as it is known."""
+        return identify(self._study_of(readings))
+
     def rows_of(self, readings: Readings) -> F64:
         """(R, F) whitened rows of any readings of an artefact as it is certified, standing by standing, at the arm as
         it is known."""
         import ulna._core as _core
 
-        certain = replace(readings, artefact=kind_of(readings.artefact).certain(readings.artefact))
-        study = Study(Path(LABEL), self.arm, [certain], self._noise, self._fit)
-        assembled = assemble(study)
+        assembled = assemble(self._study_of(readings))
         rows, _ = _core.whitened_rows(assembled.problem, assembled.hold)
         more = len(self.free()) - rows.shape[1]
         return np.concatenate([rows, np.zeros((len(rows), more))], axis=1) if more else rows
+
+    def _study_of(self, readings: Readings) -> Study:
+        certain = replace(readings, artefact=kind_of(readings.artefact).certain(readings.artefact))
+        return Study(Path(LABEL), self.arm, [certain], self._noise, self._fit)
 
     def counting(self) -> list[Touch]:
         """The touches that were not withdrawn."""
@@ -214,7 +230,9 @@ class RunningFit:
         others. Raises UlnaInputError."""
         study = self.study()
         assembled = assemble(study)
+        self.fresh = False
         self.fitted = run_assembled(study, assembled, from_parameters=self._from(assembled), search=search)
+        self.fresh = True
         self._parameters, self._names = self.fitted.parameters, assembled.names
         variance = self.fitted.variance
         self._sigma = float(np.sqrt(variance)) if np.isfinite(variance) else None

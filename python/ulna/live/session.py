@@ -18,6 +18,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import DOUBTFUL, Fault
 from ulna.live.guide import Guide, Suggestion
 from ulna.live.journal import Journal
+from ulna.live.lacking import Lacking, lacking, never
 from ulna.live.places import Told, tell
 from ulna.live.postures import travel_of
 from ulna.live.resting import Rests
@@ -50,6 +51,8 @@ class Meter:
     touches_more: int | None
     """About how many to the goal."""
     next: Suggestion
+    lacking: Lacking
+    """What is lost, and what is weak."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +105,7 @@ class Session:
         self.fit = RunningFit(arm, [spec.artefact], noise, fit or FitOptions(hold=list(spec.hold)))
         self.guide = Guide(self.fit, spec)
         self.determinable = self.guide.determinable
+        self._never = never(self.fit, self.guide)
         self.place = 0
         """Number of the place where the artefact stands; 0 before the first touch."""
         self._probe = arm.probe_index(spec.probe)
@@ -178,7 +182,11 @@ class Session:
         suggestion = self.guide.next(so_far, str(self.place) if self.place else None)
         self._suggestion = suggestion
         more = None if self.goal_u_mm is None else self.guide.touches_more(so_far, self.goal_u_mm)
-        return Meter(so_far, self.determinable, worth, self.goal_u_mm, more, suggestion)
+        return Meter(so_far, self.determinable, worth, self.goal_u_mm, more, suggestion, self._lacking(so_far))
+
+    def _lacking(self, so_far: SoFar) -> Lacking:
+        # of one touch in each place nothing can be said: no row of them is left
+        return lacking(self.fit.tell(), self._never) if so_far.determined else Lacking(self._never)
 
     @property
     def rests(self) -> float:

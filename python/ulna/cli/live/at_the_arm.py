@@ -14,6 +14,7 @@ from rich.console import RenderableType
 from ulna.cli.live.keys import pressed
 from ulna.cli.live.rounds import Round
 from ulna.cli.live.watching import read_on
+from ulna.cli.printed.lacking import lacking_lines
 from ulna.cli.printed.touching import happened_lines, meter_lines, record_of, screen
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import Fault
@@ -37,6 +38,9 @@ class Bench:
         self.as_json, self.touches, self.seconds = as_json, touches, seconds
         self.meter: Meter | None = None
         self.said: list[str] = []
+        self.lacking: list[str] = []
+        """What is not known, in words: made anew where it is not the same any more."""
+        self._told: object = None
         self._ended = False
 
     def run(self) -> None:
@@ -52,7 +56,7 @@ class Bench:
                     self._do(word)
 
             def tick(known: Round) -> None:
-                show(screen(self.session, self.meter, self.said))
+                show(screen(self.session, self.meter, self.lacking, self.said))
 
             known = read_on(self.session.stream, self.seconds, each, tick, FRAMES_HZ, lambda: self._ended)
         if known.why is not None:
@@ -113,10 +117,14 @@ class Bench:
     def _known(self) -> None:
         """What is known now, said."""
         self.meter = self.session.meter()
+        told = self.meter.lacking.told
+        changed, self._told = told != self._told, told
+        if changed:
+            self.lacking = lacking_lines(self.meter.lacking)
         if self.as_json:
             print(json.dumps(record_of(self.meter), ensure_ascii=False, allow_nan=False), flush=True)
         elif not sys.stdout.isatty():
-            for line in meter_lines(self.meter):
+            for line in [*meter_lines(self.meter), *(self.lacking if changed else [])]:
                 print(line, flush=True)
 
     def _tell(self, lines: list[str], told: bool = False) -> None:

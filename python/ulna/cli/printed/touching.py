@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from ulna.cli.printed.lacking import LINES
 from ulna.ground.errors import for_people
 from ulna.live.faults import Fault
 from ulna.live.session import SUSPICIOUS, Event, Happened, Meter
@@ -70,7 +71,7 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     return lines
 
 
-def screen(session: Session, meter: Meter | None, said: list[str]) -> RenderableType:
+def screen(session: Session, meter: Meter | None, lacking: list[str], said: list[str]) -> RenderableType:
     """80 columns, always as many lines."""
     tip_mm, place = session.tip_mm, Text("nothing has come yet")
     if tip_mm is not None:
@@ -86,6 +87,9 @@ def screen(session: Session, meter: Meter | None, said: list[str]) -> Renderable
             Text(meter_line(meter), style="bold"),
             *(Text(line) for line in lines),
             *([Text("")] * (2 - len(lines))),
+            Text(""),
+            *(Text(line, style="yellow") for line in lacking),
+            *([Text("")] * (LINES - len(lacking))),
         ]
     rows += [Text(""), *(Text(line) for line in said)]
     rows += [Text(""), Text("space touch · n moved · w withdraw · t angles right · q end", style="dim")]
@@ -115,6 +119,7 @@ def _known(meter: Meter) -> dict[str, Any]:
         "determined": so_far.determined,
         "determinable": meter.determinable,
         "not_determined": so_far.not_determined,
+        "lacking": meter.lacking.as_dict(),
         **asdict(meter.worth),
         "goal_u_mm": meter.goal_u_mm,
         "touches_more": meter.touches_more,
