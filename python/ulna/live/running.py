@@ -22,7 +22,7 @@ from ulna.calibration.identify import Identification, identify
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
-from ulna.live.touches import Touch, counting, leaf_of, readings_of
+from ulna.live.touches import Touch, counting, held_out, leaf_of, readings_of
 from ulna.study.assembly import Assembled, assemble
 from ulna.study.data import FitOptions, Noise
 from ulna.study.study import Study
@@ -66,7 +66,7 @@ class RunningFit:
         self._noise = noise
         self._fit = fit or FitOptions()
         self.touches: list[Touch] = []
-        """All of them, the withdrawn ones too."""
+        """All of them, the withdrawn ones and those held out too."""
         self.fitted: _core.Fitted | None = None
         """The last fit; None before the first."""
         self.fresh = False
@@ -123,14 +123,16 @@ class RunningFit:
             known = ", ".join(f"'{name}'" for name in self._artefacts)
             raise UlnaInputError(f"artefact '{touch.artefact}' is not at hand; expected one of {known}. Name it.")
         self.touches.append(touch)
-        self._follow(touch)
+        if not touch.held_out:
+            self._follow(touch)
 
     def withdraw(self, number: int, reason: str) -> None:
         """A touch that shall not count; it stays in `touches`. Raises UlnaInputError where there is none such."""
         for k, touch in enumerate(self.touches):
             if touch.number == number and touch.withdrawn is None:
                 self.touches[k] = replace(touch, withdrawn=reason)
-                self._follow(touch)
+                if not touch.held_out:
+                    self._follow(touch)
                 return
         raise UlnaInputError(f"touch {number}: there is none, or it was withdrawn before; expected one that counts.")
 
@@ -222,8 +224,14 @@ class RunningFit:
         return Study(Path(LABEL), self.arm, [certain], self._noise, self._fit)
 
     def counting(self) -> list[Touch]:
-        """The touches that were not withdrawn."""
+        """The touches that are fitted."""
         return counting(self.touches)
+
+    def whole_study(self) -> Study:
+        """The same as `study` with the touches that are held out behind those of the same artefact. Raises
+        UlnaInputError where there are none."""
+        self.study()
+        return self._study([*counting(self.touches), *held_out(self.touches)])
 
     def refit(self, search: bool = False) -> _core.Fitted:
         """The fit of the touches that count, from where the last one ended. search: whether a poor minimum is left for

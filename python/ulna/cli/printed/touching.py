@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ulna.live.session import Session
 
 _BAR = 10
+_KEYS = "space touch · n moved · w withdraw · h hold out · t angles right · q end"
 
 
 def meter_line(meter: Meter) -> str:
@@ -27,6 +28,10 @@ def meter_line(meter: Meter) -> str:
     known = min(meter.so_far.determined, meter.determinable)
     worth = meter.worth
     line = f"{known} of {meter.determinable} known · U({worth.length_mm:.0f} mm) {_length(2.0 * worth.u_mm)}"
+    if meter.fresh is not None:
+        return (
+            f"{line} · fresh place {min(meter.fresh.done + 1, meter.fresh.places)} of {meter.fresh.places}, not fitted"
+        )
     if meter.goal_u_mm is None:
         return line
     goal = _length(2.0 * meter.goal_u_mm)
@@ -59,7 +64,8 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     """A touch that was taken, and what is odd about it."""
     touch = happened.touch
     feature = f", {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
-    said = f"Touch {touch.number}{feature} in place {touch.standing}: spread {_length(touch.spread_mm)}"
+    place = f"fresh place {touch.standing}, not fitted" if touch.held_out else f"place {touch.standing}"
+    said = f"Touch {touch.number}{feature} in {place}: spread {_length(touch.spread_mm)}"
     if happened.scatter_mm is not None:
         said += f", scatter in its seat {_length(happened.scatter_mm)}"
     lines = [said + "."]
@@ -69,6 +75,13 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
         lines.append(f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated?")
         lines.append("Repeat it, and withdraw this one (w), or keep it.")
     return lines
+
+
+def held_out_lines(places: int) -> list[str]:
+    """What begins."""
+    if not places:
+        return ["Touches are fitted again: put it in another place."]
+    return [f"Now {places} fresh places, not fitted, to judge by: put it where nothing was touched yet."]
 
 
 def screen(session: Session, meter: Meter | None, lacking: list[str], said: list[str]) -> RenderableType:
@@ -92,7 +105,7 @@ def screen(session: Session, meter: Meter | None, lacking: list[str], said: list
             *([Text("")] * (LINES - len(lacking))),
         ]
     rows += [Text(""), *(Text(line) for line in said)]
-    rows += [Text(""), Text("space touch · n moved · w withdraw · t angles right · q end", style="dim")]
+    rows += [Text(""), Text(_KEYS, style="dim")]
     return Group(*rows)
 
 
@@ -123,6 +136,7 @@ def _known(meter: Meter) -> dict[str, Any]:
         **asdict(meter.worth),
         "goal_u_mm": meter.goal_u_mm,
         "touches_more": meter.touches_more,
+        "held_out": None if meter.fresh is None else asdict(meter.fresh),
         "next": {
             "feature": suggestion.name,
             "here": suggestion.here,
