@@ -245,3 +245,17 @@ def test_with_a_number_it_begins_at_the_goal_and_ends_with_the_last() -> None:
             bench._event(event)
     assert bench._ended
     assert [touch.held_out for touch in session.fit.touches] == [False] * FITTED + [True] * 4
+
+
+def test_what_was_interrupted_after_its_last_fresh_place_ends_at_once() -> None:
+    arm, hand = hand_of(3)
+    session = session_of(arm, hand)
+    followed(session, hand, FITTED)
+    session.hold_out(1)
+    followed(session, hand, 2)
+    for held_out, ends in ((None, False), (1, True)):
+        resumed = session_of(arm, hand)
+        resumed.go_on(session.fit.touches, 1)
+        bench = Bench(resumed, True, None, None, held_out)
+        bench._look()
+        assert bench._ended is ends

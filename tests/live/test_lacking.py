@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from dataclasses import replace
 
@@ -13,7 +14,7 @@ from tests.live.test_session import hand_of, played, session_of
 import ulna
 from ulna.artefacts.artefact import Artefact
 from ulna.cli.printed.lacking import LINES, in_words, lacking_lines
-from ulna.cli.printed.touching import record_of
+from ulna.cli.printed.touching import held_out_lines, record_of, screen
 from ulna.live.lacking import Lacking, lacking, never
 from ulna.live.touches import Touch
 
@@ -128,3 +129,27 @@ def test_parameters_have_words() -> None:
     assert in_words("joint.6.theta0") == "zero of joint 6"
     assert in_words("probe.bent.z") == "z of probe bent"
     assert in_words("joint.2.sin1") == "joint.2.sin1"
+
+
+def test_a_screen_has_80_columns_and_always_as_many_lines() -> None:
+    from rich.console import Console
+
+    arm, hand = hand_of(3)
+    session = session_of(arm, hand)
+    for _ in range(3):
+        hand.follow(session.meter().next)
+        played(session)
+    meter = session.meter()
+    words = lacking_lines(meter.lacking)
+    assert 1 < len(words) <= LINES
+    heights = set()
+    for lines in (words, [], words[:1] * LINES):
+        console = Console(width=80, file=io.StringIO())
+        console.print(screen(session, meter, lines, held_out_lines(10)))
+        text = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+        assert max(map(len, text)) <= 80
+        heights.add(len(text))
+        # nothing was broken: each sentence stands in a line of its own
+        assert any(line.rstrip() == held_out_lines(10)[0] for line in text)
+        assert "h hold out" in text[-1]
+    assert len(heights) == 1

@@ -59,7 +59,7 @@ class Bench:
 
     def run(self) -> None:
         """Until it is ended: by a key or a word, after so many touches or seconds, by the source or by Ctrl-C."""
-        self._known()
+        self._look()
         at_terminal = sys.stdout.isatty() and not self.as_json
         with _asking() as words, _showing(at_terminal) as show:
 
@@ -126,9 +126,7 @@ class Bench:
                 _tone(True, self.as_json)
                 names = list(self.session.spec.artefact.features)
                 self._tell(happened_lines(event, names), told=self.as_json)
-                meter = self.session.meter()
-                # whoever follows is told one thing to do next
-                self._known(None if self._turn(meter) else meter)
+                self._look()
 
     def _hold_out(self, rest: str) -> None:
         """Without a number it begins, and goes back to fitting where it has begun."""
@@ -144,8 +142,14 @@ class Bench:
         self._begun, self._offered = True, False
         self._tell(held_out_lines(places))
 
+    def _look(self) -> None:
+        """At the beginning, which may be the end of what was interrupted, and after each touch."""
+        meter = self.session.meter()
+        # whoever follows is told one thing to do next
+        self._known(None if self._turn(meter) else meter)
+
     def _turn(self, meter: Meter) -> bool:
-        """After a touch: whether that was enough, to fit or to judge by; whether another way of touching begins."""
+        """Whether that was enough, to fit or to judge by; whether another way of touching begins."""
         fresh, goal = meter.fresh, meter.goal_u_mm
         if fresh is not None:
             if fresh.done >= fresh.places:

@@ -64,8 +64,8 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     """A touch that was taken, and what is odd about it."""
     touch = happened.touch
     feature = f", {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
-    place = f"fresh place {touch.standing}, not fitted" if touch.held_out else f"place {touch.standing}"
-    said = f"Touch {touch.number}{feature} in {place}: spread {_length(touch.spread_mm)}"
+    fresh = "fresh " if touch.held_out else ""
+    said = f"Touch {touch.number}{feature} in {fresh}place {touch.standing}: spread {_length(touch.spread_mm)}"
     if happened.scatter_mm is not None:
         said += f", scatter in its seat {_length(happened.scatter_mm)}"
     lines = [said + "."]
@@ -81,7 +81,7 @@ def held_out_lines(places: int) -> list[str]:
     """What begins."""
     if not places:
         return ["Touches are fitted again: put it in another place."]
-    return [f"Now {places} fresh places, not fitted, to judge by: put it where nothing was touched yet."]
+    return [f"Now {places} fresh places, not fitted, to judge by: where nothing was touched yet."]
 
 
 def screen(session: Session, meter: Meter | None, lacking: list[str], said: list[str]) -> RenderableType:
