@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,27 @@ def test_of_several_artefacts_one_is_named(tmp_path: Path) -> None:
         purpose_of(path, arm, "plat")
     with pytest.raises(ulna.UlnaInputError, match="plans for 'bar'"):
         purpose_of(EXAMPLE / "plan.toml", arm, "plate")
+
+
+def test_a_study_that_waits_for_its_readings_says_the_same(tmp_path: Path) -> None:
+    arm, spec = platinum_plan()
+    path = study_in(tmp_path, (f'"{EXAMPLE / "bars.csv"}"', '"bar.csv"'))
+    with pytest.raises(ulna.UlnaInputError, match=r"has no readings yet, and joint 1 of arm .* has no limits"):
+        purpose_of(path, arm)
+    assert spec.travel_rad is not None
+    travel = [tuple(each) for each in spec.travel_rad.tolist()]
+    joints = [replace(joint, limits_rad=each) for joint, each in zip(arm.joints, travel, strict=True)]
+    limited = replace(arm, joints=joints)
+    found, read = purpose_of(path, limited), purpose_of(EXAMPLE / "study.toml", limited)
+    assert found.remarks == ()
+    assert found.spec.artefact == read.spec.artefact
+    assert (found.spec.probe, found.spec.seat_mm, found.fit) == ("bent", read.spec.seat_mm, read.fit)
+    assert found.spec.travel_rad is not None
+    assert np.array_equal(found.spec.travel_rad, spec.travel_rad)
+    # a table that is there is read, and what is wrong with it is said
+    (tmp_path / "bar.csv").write_text("placement,feature,q1\n", encoding="utf-8")
+    with pytest.raises(ulna.UlnaInputError, match=r"bar\.csv"):
+        purpose_of(path, limited)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from ulna.planning.from_study import spec_of_study
 from ulna.planning.refusals import check, free_parameters
 from ulna.planning.spec import PlanSpec
 from ulna.study.data import FitOptions
+from ulna.study.file import study_file
 from ulna.study.study import Study
 
 WHAT = 'a plan file or a study (TOML, format = "ulna-plan/1" or "ulna-study/1")'
@@ -63,10 +64,15 @@ def _of_plan(path: Path, arm: Arm, artefact: str | None) -> Purpose:
 
 
 def _of_study(path: Path, arm: Arm, artefact: str | None) -> Purpose:
-    study = Study.load(path, "all")
-    spec = spec_of_study(study, arm, artefact)
+    entries = study_file(path).readings
+    waiting = not any((path.parent / entry.file).exists() for entry in entries)
+    study = Study.waiting(path) if waiting else Study.load(path, "all")
+    probes = {entry.probe for entry in entries if entry.artefact in (None, artefact) or artefact is None}
+    spec = spec_of_study(study, arm, artefact, probes.pop() if len(probes) == 1 else None)
     count = sum(len(group) for group in study.readings)
-    remarks = [f"{path}: its {count} readings are not taken into the session; what is known begins from ARM."]
+    remarks = []
+    if count:
+        remarks.append(f"{path}: its {count} readings are not taken into the session; what is known begins from ARM.")
     other = _not_taken(study.fit)
     if other:
         remarks.append(

@@ -38,15 +38,15 @@ def planned(study: Study, arm: Arm, said: str = "") -> list[Artefact]:
 def travel_read(arm: Arm, study: Study | None) -> list[tuple[float, float]]:
     """Of each joint its limits; where it has none as far as the study's readings go, without any ±3.14 rad."""
     groups = [] if study is None else study.readings
-    read = [q_rad for group in groups for q_rad in (group.q_rad, group.p_rad) if q_rad is not None]
+    read = [q_rad for group in groups for q_rad in (group.q_rad, group.p_rad) if q_rad is not None and len(q_rad)]
     read_rad = np.concatenate(read) if read else np.array([[-3.14] * arm.n, [3.14] * arm.n])
     ends = zip(read_rad.min(axis=0).tolist(), read_rad.max(axis=0).tolist(), strict=True)
     return [joint.travel_rad or each for joint, each in zip(arm.joints, ends, strict=True)]
 
 
-def spec_of_study(study: Study, arm: Arm, artefact: str | None = None) -> PlanSpec:
+def spec_of_study(study: Study, arm: Arm, artefact: str | None = None, probe: str | None = None) -> PlanSpec:
     """What to touch with an arm, as a study has it; all that it does not say is as in a plan file that says nothing.
-    artefact: which, where there are several. Raises UlnaInputError."""
+    artefact: which, where there are several; probe: of a study without readings. Raises UlnaInputError."""
     chosen = _chosen(study, planned(study, arm), artefact)
     noise = _stated(study)
     kind = kind_of(chosen)
@@ -58,8 +58,8 @@ def spec_of_study(study: Study, arm: Arm, artefact: str | None = None) -> PlanSp
         touches=kind.touches if kind.scattered else 1 if len(chosen.features) > 1 else 2,
         candidates=10_000 if kind.scattered else 100_000,
         hold=list(study.fit.hold),
-        probe=_probe(study, arm, chosen),
-        travel_rad=np.array(travel_read(arm, study)),
+        probe=_probe(study, arm, chosen, probe),
+        travel_rad=_travel(study, arm),
         label=study.label,
         files=tuple(file.path for file in study.files),
     )
@@ -92,11 +92,24 @@ def _stated(study: Study) -> tuple[F64, float]:
     return noise.encoder_rad, noise.seat_mm
 
 
-def _probe(study: Study, arm: Arm, artefact: Artefact) -> str | None:
-    """The probe that touched it; None: the arm's only one."""
+def _travel(study: Study, arm: Arm) -> F64:
+    """(n, 2) rad."""
+    endless = [k for k, joint in enumerate(arm.joints, start=1) if joint.travel_rad is None]
+    if endless and not any(len(group) for group in study.readings):
+        raise UlnaInputError(
+            f"{study.label}: has no readings yet, and joint {endless[0]} of arm '{arm.name}' has no limits; expected "
+            "how far each joint turns. Add limits to the arm file, or make a plan file: ulna plan ARM --make-plan PLAN."
+        )
+    return np.array(travel_read(arm, study))
+
+
+def _probe(study: Study, arm: Arm, artefact: Artefact, said: str | None) -> str | None:
+    """The probe that touched it, or the one said where nothing was; None: the arm's only one."""
     codes = [group.probe for group in study.readings if group.artefact.name == artefact.name]
     names = list(study.arm.probes)
     used: list[str] = [names[code] for code in np.unique(np.concatenate(codes)).tolist()]
+    if not used:
+        return said
     if len(used) > 1:
         raise UlnaInputError(
             f"{study.label}: artefact '{artefact.name}' was touched with probes {', '.join(used)}; expected one. Make "
