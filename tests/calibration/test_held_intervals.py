@@ -84,6 +84,16 @@ def test_intervals_hold_whatever_was_stated(pairs: list[Pair], factor: float | N
     assert not found.too_small
 
 
+@pytest.mark.slow
+def test_errors_of_lengths_are_as_large_as_is_expected(pairs: list[Pair]) -> None:
+    """What is expected of them, root mean square, is what they are: half as much, or twice, would be seen."""
+    found = held(pairs, 1.0)
+    errors_mm, u_mm = found.errors_mm.T
+    assert len(errors_mm) == len(found.lengths) == ARMS * 12
+    assert np.sqrt((errors_mm**2).mean()) == pytest.approx(np.sqrt((u_mm**2).mean()), rel=0.15)
+    assert np.allclose(np.abs(errors_mm) / u_mm, found.lengths * 1.96, rtol=0.02)
+
+
 TOUCHES = 12
 PAIRS_OF_FIVE = list(combinations(range(5), 2))
 

@@ -16,7 +16,8 @@ import pytest
 from tests.cli_runs import assert_bad_input, run
 from tests.live.parts import Pty, pty
 
-from ulna.live.journal import EVENT, SAMPLES, Reading
+from ulna.live.journal import EVENT, SAMPLES, Journal, Reading
+from ulna.live.samples import Hello
 
 SOURCE = """\
 format = "ulna-source/1"
@@ -162,3 +163,50 @@ def test_what_is_wrong_is_one_sentence(tmp_path: Path) -> None:
     assert_bad_input(run("live", "guess", f"file:{tmp_path}/x.csv"), "brings readings, not bytes")
     assert_bad_input(run("live", "replay", tmp_path / "none.journal"), "no such file")
     assert_bad_input(run("live", "replay", tmp_path / "none.journal", "--speed", "fast"), "speed", "fast")
+
+
+EMPTY = {
+    "names.csv": "t,q1,q2,q3,q4\n",
+    "words.csv": "t,q1,q2,q3,q4\nx,y,z,a,b\n",
+    "line.csv": "hello\n",
+    "bare.csv": "",
+    "none.journal": None,
+}
+
+
+@pytest.mark.parametrize("name", EMPTY)
+def test_a_source_without_a_reading_is_one_sentence_and_leaves_nothing(result: Path, tmp_path: Path, name: str) -> None:
+    file, text = tmp_path / name, EMPTY[name]
+    if text is None:
+        hello = Hello(("a", "b", "c", "d"), "rad", str(file))
+        with Journal.create(file, hello) as journal:
+            journal.event({"kind": "end", "text": "ended by the user.", "samples": 0})
+    else:
+        file.write_text(text)
+    out, table = tmp_path / "out.journal", tmp_path / "out.csv"
+    toml = tmp_path / "source.toml"
+    toml.write_text(f'format = "ulna-source/1"\nurl = "file:{file}"\n[map]\nunit = "rad"\n')
+    for words in (
+        ["watch", file],
+        ["watch", file, "--json"],
+        ["replay", file],
+        ["replay", file, "-o", table],
+        ["record", file, "-o", out],
+        ["relay", file, "ws://127.0.0.1:9/"],
+        ["measure", result, toml, "--probe", "bent", "-o", table],
+        ["commission", toml, "--joints", "4", "--yes", "-o", tmp_path / "arm"],
+    ):
+        done = run("live", *words)
+        assert_bad_input(done, name)
+        assert done.stdout == ""
+    expected = {"names.csv": "ended without a reading", "words.csv": "5 numbers: 'x,y,z,a,b", "bare.csv": "is empty"}
+    assert expected.get(name, "reading") in run("live", "watch", file).stderr
+    assert sorted(each.name for each in tmp_path.iterdir()) == sorted([name, "source.toml"])
+
+
+def test_a_recording_that_ends_before_a_reading_is_none(tmp_path: Path) -> None:
+    """The time was over first."""
+    done = run("live", "record", "virtual:", "-o", tmp_path / "run.journal", "--seconds", "0")
+    assert done.returncode == 2
+    assert "run.journal: not written, for no reading came" in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -104,7 +104,8 @@ def test_a_journal_keeps_how_its_source_was_mapped(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "words"), [("", "1 to 32"), (",".join("abcdefghij" * 4), "twice"), ("t_host_s\n1\n", "0 channels")]
+    ("content", "words"),
+    [("", "line 1 is empty"), (",".join("abcdefghij" * 4), "twice"), ("t_host_s\n1\n", "0 channels")],
 )
 def test_csv_that_is_none(tmp_path: Path, content: str, words: str) -> None:
     path = tmp_path / "x.csv"

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.cli_runs import assert_bad_input, run
-from tests.live.hands import NOISE_RAD, hand, near, source
+from tests.cli_runs import BENT, assert_bad_input, run
+from tests.live.hands import DWELL, NOISE_RAD, TRAVEL, hand, near, source
 from tests.live.parts import in_thread, pty
 
 import ulna
-from ulna import UlnaInputError
+from ulna import Arm, UlnaInputError
+from ulna.arm.joint import Joint
 from ulna.live.features import asked_for
 
 
@@ -67,6 +68,59 @@ def test_what_was_asked_wrongly_is_one_sentence(result: Path, tmp_path: Path) ->
         with pytest.raises(UlnaInputError) as caught:
             asked_for(texts)
         assert expected in str(caught.value)
+
+
+@pytest.mark.parametrize(("by", "option", "taken"), [("still", (), 3), ("key", (), 0), ("key", ("--still",), 3)])
+def test_what_takes_a_touch_is_as_the_source_file_says(
+    result: Path, tmp_path: Path, by: str, option: tuple[str, ...], taken: int
+) -> None:
+    file = source(tmp_path, hand(near(3)))
+    file.write_text(file.read_text() + f'[trigger]\nby = "{by}"\n')
+    done = run("live", "measure", result, file, "--probe", "bent", "--json", *option)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.splitlines()[-1])["end"]["points"] == taken
+
+
+@pytest.mark.parametrize("by", ["button", "key"])
+def test_the_arms_button_takes_a_touch(result: Path, tmp_path: Path, by: str) -> None:
+    """At the second of three rests, and on the way to the third, where it is refused."""
+    q_rad = hand(near(3))
+    down = np.zeros(len(q_rad), dtype=int)
+    down[DWELL + TRAVEL + 200 :][:20] = down[2 * (DWELL + TRAVEL) - 25 :][:20] = 1
+    rows = [",".join(map(repr, row)) + f",{button}" for row, button in zip(q_rad.tolist(), down.tolist(), strict=True)]
+    file = source(tmp_path, q_rad)
+    (tmp_path / "run.csv").write_text("\n".join(["q1,q2,q3,q4,q5,q6,q7,button", *rows]) + "\n")
+    file.write_text(file.read_text() + f'[trigger]\nby = "{by}"\n')
+    done = run("live", "measure", result, file, "--probe", "bent", "--json")
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    (point,) = (line["taken"] for line in lines if "taken" in line)
+    assert np.abs(np.array(point["q_rad"]) - near(3)[1]).max() < NOISE_RAD
+    (refused,) = (line["refused"] for line in lines if "refused" in line)
+    assert "hold still" in refused["reason"]
+
+
+def test_stops_folded_postures_and_temperature_are_told(tmp_path: Path) -> None:
+    """A hand leads joint 1 to its stop, then the arm, all its axes parallel, is folded everywhere."""
+    joints = (Joint(a_mm=300.0, limits_rad=(-1.0, 1.0)), Joint(a_mm=300.0), Joint())
+    Arm("flat", joints, {"bent": BENT}).save(tmp_path / "arm.toml")
+    poses = [np.array([0.2, 0.8, 0.1]), np.array([0.995, 0.8, 0.1]), np.array([1.01, 0.8, 0.1])]
+    file = source(tmp_path, hand(poses))
+    words = ["live", "measure", tmp_path / "arm.toml", file, "--encoder-u", "5e-6", "--temperature", "25"]
+    done = run(*words, "--json", "--still")
+    assert done.returncode == 0, done.stderr
+    lines = [json.loads(line) for line in done.stdout.splitlines()]
+    tips = [line["tip"] for line in lines if "tip" in line]
+    assert all(any(text.startswith("stretched or folded") for text in tip["warnings"]) for tip in tips)
+    near_stop = [any("from its stop" in text or "beyond its limit" in text for text in tip["warnings"]) for tip in tips]
+    assert near_stop == [abs(tip["q_rad"][0]) > 1.0 - np.radians(2.0) for tip in tips]
+    assert 0.4 < np.mean(near_stop) < 0.8
+    # at the stop itself there is no touch
+    assert sum("taken" in line for line in lines) == 1
+    assert ["joint 1 is at its stop" in line["refused"]["reason"] for line in lines if "refused" in line] == [True] * 2
+    assert any("temperature is not used" in line["note"]["text"] for line in lines if "note" in line)
+    shown = run(*words).stdout
+    assert "; joint 1 is " in shown
+    assert "stretched or folded" in shown
 
 
 def test_from_a_serial_line(result: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -228,7 +229,7 @@ def test_features(result: Path, tmp_path: Path) -> None:
             for said in out.take(frames):
                 if isinstance(said, Set) and said.point.name == "p8":
                     notebook.new()
-                    for _ in range(1):
+                    for _ in range(2):  # circle, plane
                         notebook.turn_kind()
         lines = summary(out)
     assert [point.name for point in notebook.points] == [f"p{k}" for k in range(1, 14)]
@@ -252,6 +253,35 @@ def test_features(result: Path, tmp_path: Path) -> None:
     back = notebook.take_back()
     assert back is not None
     assert (back.name, notebook.next_name()) == ("p13", "p13")
+
+
+def test_a_hole_touched_from_within(result: Path, tmp_path: Path) -> None:
+    """Of 20 mm by a ball of 4 mm, whose centre goes round on 16 mm; and the same points as a shaft's."""
+    arm, first = Arm.load(result), near(1)[0]
+    centre = arm.core.tip(first[None], 0)[0]
+    angle = np.arange(8) / 8.0 * 2.0 * np.pi
+    ring = centre + 8.0 * np.array([np.cos(angle), np.sin(angle), 0.0 * angle]).T
+    poses = [reached(arm, first, each) for each in ring]
+    with streaming(source(tmp_path, hand(poses))) as stream:
+        calibrated = Calibrated(result, "bent", inside=True)
+        probes = dict(calibrated.arm.probes)
+        probes["bent"] = replace(probes["bent"], ball_mm=4.0)
+        calibrated.arm = replace(calibrated.arm, probes=probes, uncertainty=calibrated.arm.uncertainty)
+        out = ReadOut(stream, calibrated, Notebook("circle"), by_itself=True)
+        read(stream, out)
+        found = {figure.name: figure for figure in out.figures(out.notebook.current)}
+        lines = summary(out)
+    assert list(found) == ["x", "y", "z", "diameter", "n_x", "n_y", "n_z", "form"]
+    assert _within(found["diameter"], 20.0)
+    assert all(_within(found[axis], centre[k]) for k, axis in enumerate("xyz"))
+    assert abs(found["n_z"].value or 0.0) == pytest.approx(1.0, abs=1e-5)
+    assert abs(found["form"].value or 1.0) < 0.005
+    assert any(line.startswith("f1 circle (p1 … p8): x ") for line in lines)
+    calibrated._inside = False
+    (shaft,) = (each for each in calibrated.figures("circle", poses, "shaft") if each.name == "diameter")
+    assert shaft.value == pytest.approx(12.0, abs=0.01)
+    without = Calibrated(replace(calibrated.arm, uncertainty=None), "bent")  # numbers alone
+    assert {each.name: each.value for each in without.figures("circle", poses, "shaft")}["diameter"] == shaft.value
 
 
 def _read(stream: Stream) -> Any:

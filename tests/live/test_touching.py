@@ -90,11 +90,11 @@ class Played:
 
 
 @contextmanager
-def played(folder: Path, hand: Hand, *options: str) -> Iterator[Played]:
+def played(folder: Path, hand: Hand, *options: str, plan: str = "plan.toml") -> Iterator[Played]:
     with socket.create_server(("127.0.0.1", 0)) as server:
         source = folder / "source.toml"
         source.write_text(SOURCE.format(port=server.getsockname()[1]), encoding="utf-8")
-        arguments = [str(EXAMPLE / "platinum.toml"), str(EXAMPLE / "plan.toml"), str(source), "-o", str(folder / "out")]
+        arguments = [str(EXAMPLE / "platinum.toml"), str(EXAMPLE / plan), str(source), "-o", str(folder / "out")]
         process = subprocess.Popen(
             [sys.executable, "-m", "ulna", "live", "touch", *arguments, "--json", "--goal", "0.04", "--length", "500",
              *options],
@@ -162,6 +162,33 @@ def test_a_program_follows_the_guide_is_killed_goes_on_and_has_an_arm(tmp_path: 
     assert np.sqrt(((apart[0] - apart[1]) ** 2).mean()) < 0.1
 
 
+@pytest.mark.timeout(300)
+def test_of_a_study_and_with_places_held_out_it_ends_by_itself_and_says_how_good_it_is(tmp_path: Path) -> None:
+    with played(tmp_path, hand_of(13), "--touches", "13", "--held-out", "2", plan="study.toml") as run:
+        known: list[dict[str, Any]] = []
+        last: dict[str, Any] = {}
+        for line in run.lines():
+            last = line
+            if "known" in line:
+                known.append(line["known"])
+                run.follow(line["known"])
+        out, err = run.process.communicate(timeout=60.0)
+    assert run.process.returncode == 0, (out, err)
+    assert "its 202 readings are not taken into the session" in err
+    progress = [each["held_out"]["done"] for each in known if each["held_out"] is not None]
+    assert progress[0] == 0
+    assert progress[-1] == 2
+    assert {each["held_out"]["places"] for each in known if each["held_out"] is not None} == {2}
+    assert known[-1]["touches"] <= 13  # what is held out is not counted
+    found = last["held_out"]
+    assert found["places"] == 2
+    study = tmp_path / "out" / "study.toml"
+    judged = ulna.evaluate(tmp_path / "out" / "result" / "result.json", ulna.Study.load(study, rows="check"))
+    assert found["overall"] == pytest.approx(dict(judged.overall))
+    assert found["expected_length_error_rms_mm"] < 0.1
+    assert found["overall"]["length_error_rms_mm"] < 0.2 < found["before"]["length_error_rms_mm"]
+
+
 FULL = """
 import resource, signal, sys
 import numpy as np
@@ -205,7 +232,7 @@ def test_words_that_are_none_and_touches_that_are_not_there_are_told(tmp_path: P
             run.say(word)
         out, err = run.process.communicate(timeout=60.0)
     assert run.process.returncode == 0
-    assert "'tuoch' is no word here; expected one of touch, moved, withdraw, trust, end." in err
+    assert "'tuoch' is no word here; expected one of touch, moved, withdraw, hold-out, trust, end." in err
     assert "touch 7: there is none" in err
     assert "withdraw: got 'x'" in err
     assert any("refused" in json.loads(line) for line in out.splitlines())

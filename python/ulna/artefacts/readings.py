@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,12 @@ class Readings(Shown):
     payload: F64 | None = None
     """(N, 4) what was carried beside the arm's own masses: mass, kg, and x, y, z of its centre in the probe's frame,
     mm."""
+
+    @classmethod
+    def none(cls, artefact: Artefact, joints: int) -> Self:
+        """No reading of it yet."""
+        index = np.zeros(0, dtype=np.int64)
+        return cls(artefact, np.zeros((0, joints)), None, None, index, index, Labels.of([]), index, index)
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, Labels.of(value) if name == "placement" else value)

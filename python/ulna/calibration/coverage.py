@@ -79,6 +79,8 @@ class Judged:
 
     points: F64
     lengths: F64
+    errors_mm: F64 = field(default_factory=lambda: np.zeros((0, 2)))
+    """(N, 2) of each length its error and the standard uncertainty of that, mm."""
 
     def coverage(self, likely: Sequence[Cause] = ()) -> Coverage:
         """Of all of them; likely: why they may be too small, said where they are."""
@@ -92,6 +94,7 @@ class Judged:
         return Judged(
             np.concatenate([nothing, *(part.points for part in parts)]),
             np.concatenate([nothing, *(part.lengths for part in parts)]),
+            np.concatenate([np.zeros((0, 2)), *(part.errors_mm for part in parts)]),
         )
 
 

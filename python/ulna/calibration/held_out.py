@@ -93,7 +93,7 @@ def _of_group(scene: _Scene) -> Iterator[Judged]:
         rows = np.arange(len(group))
         (a, root_a, own_a), (b, root_b, own_b) = (scene.read(second, rows) for second in (False, True))
         assert group.length_mm is not None
-        yield Judged(np.zeros(0), _lengths(scene, b - a, group.length_mm, root_b - root_a, own_a + own_b))
+        yield Judged(np.zeros(0), *_lengths(scene, b - a, group.length_mm, root_b - root_a, own_a + own_b))
         return
     features = features_mm(group.artefact)
     code, _ = group.labels.as_they_appear()
@@ -107,7 +107,9 @@ def _of_group(scene: _Scene) -> Iterator[Judged]:
             some, tips, root, own = some[known], tips[known], root[known], own[known]
             at, u_mm = features[group.feature[some]], _u_features(group)[group.feature[some]]
             own = own + (u_mm**2)[:, None, None] * np.eye(3)
-            yield Judged(_points(scene, tips, at, root, own), _between(scene, group.feature[some], tips, at, root, own))
+            yield Judged(
+                _points(scene, tips, at, root, own), *_between(scene, group.feature[some], tips, at, root, own)
+            )
 
 
 def _u_features(group: Readings) -> F64:
@@ -159,8 +161,8 @@ def _squared_radius(dimensions: int, freedom: float) -> float:
     return dimensions * float(fisher(dimensions, freedom, P))
 
 
-def _between(scene: _Scene, feature: I64, tips: F64, at: F64, root: F64, own: F64) -> F64:
-    """Ratios of lengths between touches of two features, no touch in two of them."""
+def _between(scene: _Scene, feature: I64, tips: F64, at: F64, root: F64, own: F64) -> tuple[F64, F64]:
+    """Ratios of lengths between touches of two features, no touch in two of them; their errors."""
     first, second = [], []
     waiting: list[int] = []
     for k in range(len(feature)):
@@ -172,13 +174,13 @@ def _between(scene: _Scene, feature: I64, tips: F64, at: F64, root: F64, own: F6
             first.append(partner)
             second.append(k)
     if not first:
-        return np.zeros(0)
+        return np.zeros(0), np.zeros((0, 2))
     a, b = np.array(first), np.array(second)
     true_mm = np.linalg.norm(at[b] - at[a], axis=1)
     return _lengths(scene, tips[b] - tips[a], true_mm, root[b] - root[a], own[a] + own[b])
 
 
-def _lengths(scene: _Scene, apart: F64, true_mm: F64, root: F64, own: F64) -> F64:
+def _lengths(scene: _Scene, apart: F64, true_mm: F64, root: F64, own: F64) -> tuple[F64, F64]:
     length_mm = np.linalg.norm(apart, axis=1)
     told = (length_mm > 0.0) & (true_mm > 0.0) & np.isfinite(own[:, 0, 0])
     along = apart[told] / length_mm[told][:, None]
@@ -187,5 +189,6 @@ def _lengths(scene: _Scene, apart: F64, true_mm: F64, root: F64, own: F64) -> F6
     if scene.group.p_rad is not None:
         variance += scene.group.artefact.u_mm**2
     k = student(scene.freedom(of_parameters, variance, 2.0), 0.5 * (1.0 + P))
-    ratios: F64 = np.abs(length_mm - true_mm)[told] / (k * np.sqrt(variance))
-    return ratios
+    errors_mm, u_mm = (length_mm - true_mm)[told], np.sqrt(variance)
+    ratios: F64 = np.abs(errors_mm) / (k * u_mm)
+    return ratios, np.column_stack([errors_mm, u_mm])

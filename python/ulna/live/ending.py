@@ -5,27 +5,40 @@ The journal is there from the first touch on; a session that was interrupted goe
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import polars as pl
 
+from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
+from ulna.arm.given import arm_and_noise
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.calibration.calibrate import calibrate
+from ulna.calibration.evaluate import Evaluation, evaluate
+from ulna.calibration.figures import overall_figures
+from ulna.calibration.held_out import judged
+from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError
-from ulna.live.journal import TOUCH, WITHDRAWAL, Journal, Reading
+from ulna.live.journal import EVENT, TOUCH, WITHDRAWAL, Journal, Reading
 from ulna.live.running import RunningFit
 from ulna.live.samples import Hello
-from ulna.live.touches import Touch, from_dict
+from ulna.live.touches import Touch, from_dict, held_out
 from ulna.simulation.study_files import names_for, study_toml, write_tables
+from ulna.study.file import study_file
 from ulna.study.study import Study
 
 JOURNAL = "session.journal"
 RESULT = "result"
+JUDGED = "held-out"
+FIT, CHECK = "fit", "held out"
+SPLIT = {"column": "set", "fit": FIT, "check": CHECK}
+"""How a study tells readings to fit from those held out."""
 
 
 def begin(folder: Path, hello: Hello, **head: object) -> tuple[Journal, list[Touch], str | None]:
@@ -63,20 +76,38 @@ def touches_in(path: Path) -> list[Touch]:
     return list(found.values())
 
 
+def fresh_places_in(path: Path) -> int:
+    """For how many fresh places a session was holding touches out when its journal ended; 0: it was not. Raises
+    UlnaInputError."""
+    places = 0
+    for record in Reading(path):
+        if record.kind == EVENT and "held_out" in record.content:
+            places = int(record.content["held_out"])
+    return places
+
+
 def write_study(fit: RunningFit, folder: Path) -> tuple[Path, list[str]]:
     """The touches that count as readings, with the arm where it began and the study that names both; and what was left
-    out of it, in words: a place of a bar that was touched at one end alone is no reading of a bar. Raises
-    UlnaInputError where there are none."""
-    study = fit.study()
+    out of it, in words: a place of a bar that was touched at one end alone is no reading of a bar. Touches that were
+    held out are rows to check. Raises UlnaInputError where there are none."""
+    study, held = fit.whole_study(), {str(touch.number) for touch in held_out(fit.touches)}
     left_out: list[str] = []
     groups = [_telling(group, folder, left_out) for group in study.readings]
     study = replace(study, readings=[group for group in groups if len(group)])
+    sets = {group.artefact.name: _sets(group, held) for group in study.readings}
+    some = any((each == CHECK).any() for each in sets.values())
     names = [name for name in names_for([group.artefact for group in study.readings]) if not name.startswith("truth")]
     with output_folder(folder, names, force=False) as staged:
         (staged / "arm.toml").write_text(arm_toml(study.arm), encoding="utf-8")
-        (staged / "study.toml").write_text(study_toml(study, counts=False), encoding="utf-8")
-        write_tables(study, None, staged)
+        (staged / "study.toml").write_text(study_toml(study, False, SPLIT if some else None), encoding="utf-8")
+        write_tables(study, None, staged, sets if some else {})
     return folder / "study.toml", left_out
+
+
+def _sets(group: Readings, held: set[str]) -> pl.Series:
+    """What each row is for."""
+    numbers = [] if group.id is None else group.id.tolist()
+    return pl.Series(SPLIT["column"], [CHECK if number in held else FIT for number in numbers])
 
 
 def _telling(group: Readings, folder: Path, left_out: list[str]) -> Readings:
@@ -103,3 +134,43 @@ def write_result(study: Path) -> Result:
     result = calibrate(Study.load(study))
     result.save(study.parent / RESULT)
     return result
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """What a calibrated arm makes of the places that were held out."""
+
+    places: int
+    evaluation: Evaluation
+    """As `ulna evaluate` has it."""
+    before: Figures
+    """The same figures of the arm where the session began."""
+    expected_mm: float | None
+    """Root mean square of length errors as it is expected from what is known; None where no lengths were touched."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON types only."""
+        found = self.evaluation
+        return {
+            "places": self.places,
+            "readings": found.readings,
+            "rms_mm": found.rms_mm,
+            "overall": dict(found.overall),
+            "before": dict(self.before),
+            "expected_length_error_rms_mm": self.expected_mm,
+            "coverage": None if found.coverage is None else asdict(found.coverage),
+        }
+
+
+def judge(result: Result, study: Path, begun: Arm) -> HeldOut | None:
+    """The places held out, by an arm that was not fitted to them; written beside the study as `ulna evaluate` does.
+    None where there are none. Raises UlnaInputError."""
+    if all(entry.split is None for entry in study_file(study).readings):
+        return None
+    kept = Study.load(study, "check")
+    found = evaluate(result, kept)
+    found.save(study.parent / JUDGED)
+    arm, noise = arm_and_noise(result)
+    errors_mm = judged(arm, noise, kept.with_arm(arm)).errors_mm
+    expected_mm = float(np.sqrt((errors_mm[:, 1] ** 2).mean())) if len(errors_mm) else None
+    return HeldOut(len(found.artefacts), found, overall_figures(begun, kept.with_arm(begun)), expected_mm)

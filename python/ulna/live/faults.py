@@ -1,4 +1,4 @@
-"""What can be wrong with a stream, each told once, in words, with the time at which it was seen."""
+"""What can be wrong with a stream, in words, with the time at which it was seen."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ DOUBTFUL = frozenset({RESET, SWAP, JUMP})
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that was wrong."""
+    """One thing that was wrong; or how often it was, `more`."""
 
     kind: str
     """One of `KINDS`."""
@@ -41,7 +41,10 @@ class Fault:
     """When it was seen, time.monotonic()."""
     text: str
     """One sentence."""
+    more: int = 0
+    """So many faults of this kind that were not told one by one; 0: this is one."""
 
     def as_dict(self) -> dict[str, object]:
         """As JSON has it."""
-        return {"kind": self.kind, "t_host_s": self.t_host_s, "text": self.text}
+        found: dict[str, object] = {"kind": self.kind, "t_host_s": self.t_host_s, "text": self.text}
+        return found | ({"more": self.more} if self.more else {})

@@ -1,4 +1,4 @@
-"""Points that touches set, p1, p2, …, and features made of them: a length, a ball, a plane, each with U."""
+"""Points that touches set, p1, p2, …, and features made of them: a length, a ball, a circle, a plane, each with U."""
 
 from __future__ import annotations
 
@@ -34,6 +34,9 @@ FEATURES: dict[str, FeatureKind] = {
     "point": FeatureKind("point", None, None, "the mean of its touches"),
     "length": FeatureKind("length", None, 2, "from its first touch to its second"),
     "ball": FeatureKind("ball", "sphericity", None, "least-squares sphere, the probe's own ball taken off"),
+    "circle": FeatureKind(
+        "circle", "roundness", None, "least-squares circle, the probe's own ball taken off in its plane"
+    ),
     "plane": FeatureKind("plane", "flatness", None, "least-squares plane"),
     "distance": FeatureKind("distance", None, None, "of its last touch from the plane of those before"),
 }

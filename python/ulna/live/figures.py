@@ -1,4 +1,4 @@
-"""What poses of a calibrated arm come to: places, lengths, balls, planes, each value ± U (k = 2), or why it has none.
+"""What poses of a calibrated arm come to: places, lengths, balls, circles, planes, each value ± U (k = 2), or why not.
 
 As `ulna measure` and `ulna uncertainty` have it: GUM's law of propagation, by `ulna.uncertainties`. Lengths mm.
 """
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.conditions import PAYLOAD, TEMPERATURE
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, StandsForArm, arm_and_noise
 from ulna.arm.reading_noise import ReadingNoise
@@ -73,7 +74,8 @@ class Calibrated:
         payload: str | None = None,
         inside: bool = False,
     ) -> None:
-        """encoder_u_rad: of each encoder, where it is known better than by the calibration. inside: balls are hollows.
+        """encoder_u_rad: of each encoder, where it is known better than by the calibration. inside: balls are hollows,
+        circles holes.
         Raises UlnaInputError for a probe that there is not, or a condition that nobody states."""
         self.arm, noise, self._stated_rad = _known(given)
         self.probe = list(self.arm.probes)[self.arm.probe_index(probe)]
@@ -90,6 +92,8 @@ class Calibrated:
         """Why nothing has an uncertainty; None where it has."""
         if unknown is not None:
             self.without = f"no uncertainty is known of this arm: {unknown.because}. {unknown.remedy}"
+        self.remarks = _remarks(self.arm, temperature_c, payload, self.without is None)
+        """What is to be known of conditions that were said, in sentences."""
 
     @property
     def sample_rad(self) -> F64 | None:
@@ -137,7 +141,7 @@ class Calibrated:
             probe=self.probe,
             label=name,
             noise=self.noise,
-            inside=self._inside and kind == "ball",
+            inside=self._inside and measurand.diameter is not None,
             p=P,
             **self._said,
         )
@@ -167,6 +171,23 @@ def _check_said(arm: Arm, said: dict[str, Any]) -> None:
                 f"arm '{arm.name}': its {effect.whose} {effect.does}, but {condition.missing}; a stream does not say "
                 f"it. {remedy}"
             )
+
+
+def _remarks(arm: Arm, temperature_c: float | None, payload: str | None, with_u: bool) -> list[str]:
+    given = {TEMPERATURE: temperature_c, PAYLOAD: payload}
+    found = [
+        f"The {condition.name} is not used: of this arm {condition.vain}."
+        for condition, said in given.items()
+        if said is not None and condition not in arm.needs
+    ]
+    if TEMPERATURE in arm.needs and temperature_c is not None:
+        if TEMPERATURE.doubtful(np.array([temperature_c])):
+            found.append(f"The temperature is {temperature_c:g}. {TEMPERATURE.doubt}")
+        if with_u:
+            found.append(f"The arm counts as {temperature_c:g} °C warm; what that may be off is not in U.")
+    elif with_u:
+        found.append("How warm the arm is changes nothing: its model has no temperature, and U has nothing of it.")
+    return found
 
 
 def _known(given: ArmLike) -> tuple[Arm, ReadingNoise, F64 | None]:

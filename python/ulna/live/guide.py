@@ -22,7 +22,7 @@ from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
 from ulna.live.at_hand import AtHand
 from ulna.live.running import RunningFit, SoFar
-from ulna.live.touches import Touch, readings_of
+from ulna.live.touches import Touch, present, readings_of, tips
 from ulna.live.worth import Worth, mean_variance, variances
 from ulna.planning.candidates import Candidates, draw
 from ulna.planning.information import Coordinates, candidate_rows
@@ -45,6 +45,10 @@ LOOKED_AHEAD = 300
 MOST_AHEAD = 25
 OTHER_RAD = np.radians(10.0)
 """A posture is another where one joint at least is so far from where it was."""
+ALONE = 4
+"""Touches that a fresh place of a single feature is judged by: its scatter is all that there is."""
+DRAWN, APART_MM = 100, 60.0
+"""Candidates of which a fresh place is one, and how far it is from what was touched, so that a move is seen."""
 MOVED_MM = 1.0
 """The arm has moved so far that what touches are worth is looked at anew."""
 LOOKED_AT = 200
@@ -181,6 +185,48 @@ class Guide:
         best = int(rng.integers(len(self.candidates)))
         self._planned = best
         return self._in_new_place(best, 0, 0.0)
+
+    def fresh(self, place: int, own: Sequence[Touch]) -> Suggestion:
+        """A touch to judge by: its place is any that is no earlier one, not the best. It follows from the number of the
+        place, and is the same after an interruption. own: the touches there already."""
+        rng = np.random.default_rng([self.spec.seed, 89, place, len(own)])
+        kind, artefact = kind_of(self.spec.artefact), self.spec.artefact
+        number = self._elsewhere(place)
+        if kind.placed(artefact):
+            untouched = [len(own)] if kind.scattered else self._at_hand.untouched(own)
+            if untouched:
+                return self._in_new_place(number, untouched[0], 0.0, bool(own))
+        points_mm, q_rad, feature = self._at_hand.postures(own) if kind.placed(artefact) else self._at_hand.fixed()
+        if not len(q_rad):
+            return self._in_new_place(number, 0, 0.0, bool(own))
+        k = int(rng.integers(len(q_rad)))
+        return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
+
+    def _elsewhere(self, place: int) -> int:
+        """Of some candidates at random the first that stands apart from all that was touched, else the one farthest."""
+        rng, candidates = np.random.default_rng([self.spec.seed, 89, place, 0]), self.candidates
+        some = rng.permutation(len(candidates))[:DRAWN]
+        name = self.spec.artefact.name
+        earlier = {
+            (touch.standing, touch.feature): touch
+            for touch in present(self._fit.touches)
+            if touch.artefact == name and touch.standing != str(place)
+        }
+        if not earlier:
+            return int(some[0])
+        at_mm, touched_mm = candidates.features_mm[candidates.place[some]], tips(self._fit.arm, list(earlier.values()))
+        between = np.linalg.norm(at_mm[:, :, None] - touched_mm, axis=-1).min(axis=(1, 2))
+        apart = np.flatnonzero(between > APART_MM)
+        return int(some[apart[0] if len(apart) else between.argmax()])
+
+    def judges(self, own: Sequence[Touch]) -> bool:
+        """Whether the touches in one place are enough to judge by."""
+        kind, artefact = kind_of(self.spec.artefact), self.spec.artefact
+        if not kind.placed(artefact):
+            return len(own) > 0
+        if kind.scattered:
+            return len(own) >= self._per_place
+        return not self._at_hand.untouched(own) and len(own) >= (ALONE if len(artefact.features) == 1 else 1)
 
     def _own(self, standing: str) -> list[Touch]:
         name = self.spec.artefact.name

@@ -8,6 +8,7 @@ whose checksum is wrong, at the end of the file was being written when the power
 from __future__ import annotations
 
 import json
+import math
 import os
 import struct
 import time
@@ -110,12 +111,14 @@ class Journal:
         journal = cls(stream, path)
         with journal._on_disk():
             stream.write(MAGIC)
-        described = {
+        described: dict[str, Any] = {
             "channels": list(hello.channels),
             "unit": hello.unit,
             "device": hello.device,
             "rate_hz": hello.rate_hz,
         }
+        if hello.counts_per_turn is not None:
+            described["counts_per_turn"] = list(hello.counts_per_turn)
         anchor = {"utc": datetime.now(UTC).isoformat(), "monotonic_s": time.monotonic()}
         journal._write(HEAD, _json({"format": "ulna-journal/1", "hello": described, "anchor": anchor, **head}))
         journal.flush()
@@ -232,8 +235,9 @@ class Reading:
         self.end = 0
         self.head = self._head()
         hello = self.head["hello"]
-        unit, rate_hz = hello.get("unit"), hello.get("rate_hz")
-        self.hello = Hello(tuple(hello["channels"]), unit, str(hello.get("device", self.path)), rate_hz)
+        unit, rate_hz, counts = hello.get("unit"), hello.get("rate_hz"), hello.get("counts_per_turn")
+        told = None if counts is None else tuple(counts)
+        self.hello = Hello(tuple(hello["channels"]), unit, str(hello.get("device", self.path)), rate_hz, told)
 
     def _head(self) -> dict[str, Any]:
         for record in self:
@@ -302,7 +306,15 @@ def _has_record(data: bytes) -> bool:
 def _is_head(content: Any) -> bool:
     hello = content.get("hello") if isinstance(content, dict) else None
     names = hello.get("channels") if isinstance(hello, dict) else None
-    return isinstance(names, list) and all(isinstance(name, str) for name in names) and len(names) <= MOST_CHANNELS
+    if not isinstance(hello, dict) or not isinstance(names, list) or len(names) > MOST_CHANNELS:
+        return False
+    counts = hello.get("counts_per_turn", [2.0] * len(names))
+    told = isinstance(counts, list) and len(counts) == len(names)
+    return (
+        all(isinstance(name, str) for name in names)
+        and told
+        and all(type(each) in (int, float) and 2 <= each < math.inf for each in counts)
+    )
 
 
 def _shape(samples: Samples) -> tuple[int, bool, bool]:

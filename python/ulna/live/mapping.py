@@ -36,13 +36,25 @@ class Mapping:
                 f'{path}: key \'map.unit\' is missing, and {hello.device} does not say it; expected "deg", "rad" or '
                 '"counts". Add it.'
             )
-        if unit == "counts" and table.counts_per_turn is None:
+        told = hello.counts_of(names)
+        if told is not None and unit != "counts":
+            raise UlnaInputError(
+                f"{path}: key 'map.unit': got '{unit}', but {hello.device} sends counts. Leave it out, or correct it."
+            )
+        counts = told if table.counts_per_turn is None else table.counts_per_turn
+        if unit == "counts" and counts is None:
             raise UlnaInputError(f"{path}: key 'map.counts_per_turn' is missing; expected it with counts. Add it.")
-        turn = table.counts_per_turn if unit == "counts" else math.inf if unit is None else TURN[unit]
+        turn = counts if unit == "counts" else math.inf if unit is None else TURN[unit]
         if isinstance(turn, list) and len(turn) != len(names):
             raise UlnaInputError(
                 f"{path}: key 'map.counts_per_turn': {len(turn)} numbers for {len(names)} channels; expected one for "
                 f"each."
+            )
+        if told is not None and counts is not None and not np.array_equal(np.broadcast_to(counts, len(names)), told):
+            said = ", ".join(f"{each:g}" for each in told)
+            raise UlnaInputError(
+                f"{path}: key 'map.counts_per_turn': got {counts}, but {hello.device} says {said}; expected what the "
+                "device says. Leave it out."
             )
         self.names = tuple(names)
         """Channels of q1, q2, …"""

@@ -154,7 +154,7 @@ class ReadOut:
         if self.doubt is not None or not (self._by_itself or window.button):
             return
         if window.button:
-            yield self._answer(self._rests.ask()) if self._tells else Refused(UNSURE)
+            yield self._answer(self._rests.ask(window)) if self._tells else Refused(UNSURE)
             return
         found = self._rests.look(window)
         if found is not None:

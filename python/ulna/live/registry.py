@@ -16,6 +16,7 @@ from ulna.live.source_file import StatedSource, read_source
 if TYPE_CHECKING:
     from ulna.live.source import Source
     from ulna.live.sources.wire import Wire
+    from ulna.proposals.arms import Drawn
 
 
 @dataclass(frozen=True)
@@ -30,10 +31,15 @@ class Kind:
     """What is imported that an extra brings."""
     bytes: bool = True
     """Whether it brings bytes, which a decoder reads."""
+    arm: bool = False
+    """Whether the device tells its own geometry: the module has `device_arm(stated)`."""
 
 
 KINDS: dict[str, Kind] = {
     "serial": Kind("ulna.live.sources.serial", "serial:/dev/ttyACM0?baud=115200", "a serial line"),
+    "microscribe": Kind(
+        "ulna.live.sources.microscribe", "microscribe:/dev/ttyUSB0", "a MicroScribe digitizer", bytes=False, arm=True
+    ),
     "tcp": Kind("ulna.live.sources.tcp", "tcp://host:port", "a server that sends readings"),
     "udp": Kind("ulna.live.sources.udp", "udp://:9000", "datagrams that come to a port of this machine"),
     "ws": Kind("ulna.live.sources.ws", "ws://host:port/path", "a WebSocket server"),
@@ -88,6 +94,14 @@ def open_wire(stated: StatedSource) -> Wire:
             "or messages. Use ulna live watch."
         )
     return cast("Wire", importlib.import_module(kind.module).wire(stated))
+
+
+def device_arm(stated: StatedSource) -> Drawn | None:
+    """The arm as its device itself describes it; None of kinds whose devices do not. Raises UlnaInputError."""
+    kind = kind_of(stated)
+    if not kind.arm:
+        return None
+    return cast("Drawn", importlib.import_module(kind.module).device_arm(stated))
 
 
 @contextmanager

@@ -70,9 +70,9 @@ class Rests:
         """A rest that was not there before: see `Trigger.look`."""
         return None if self._trigger is None else self._trigger.look(*self._places(window))
 
-    def ask(self) -> Taken | Refused:
-        """A touch now, asked for."""
-        window = self.newest()
+    def ask(self, window: Window | None = None) -> Taken | Refused:
+        """A touch, asked for: at the end of a window, as by the arm's button, or now."""
+        window = window or self.newest()
         if window is None or self._trigger is None:
             return Refused("too little came yet: hold still and try again")
         return self._trigger.ask(*self._places(window))

@@ -18,12 +18,13 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import Readings
+from ulna.calibration.identify import Identification, identify
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
-from ulna.live.touches import Touch, counting, leaf_of, readings_of
+from ulna.live.touches import Touch, counting, held_out, leaf_of, readings_of
 from ulna.study.assembly import Assembled, assemble
-from ulna.study.data import FitOptions, Noise
+from ulna.study.data import FitOptions, Noise, Prior
 from ulna.study.study import Study
 
 if TYPE_CHECKING:
@@ -65,9 +66,11 @@ class RunningFit:
         self._noise = noise
         self._fit = fit or FitOptions()
         self.touches: list[Touch] = []
-        """All of them, the withdrawn ones too."""
+        """All of them, the withdrawn ones and those held out too."""
         self.fitted: _core.Fitted | None = None
         """The last fit; None before the first."""
+        self.fresh = False
+        """Whether it ended, and none was tried since that did not."""
         self._parameters: F64 | None = None
         self._names: list[str] = []
         self._sigma: float | None = None
@@ -79,11 +82,11 @@ class RunningFit:
 
     @property
     def arm(self) -> Arm:
-        """As it is known now: of the last fit, or where it began."""
+        """As it is known now: of the last fit; before that of the touches and the drawing; or where it began."""
         start = self._assembled.arm
-        if self.fitted is None:
+        if self._parameters is None:
             return start
-        return start.with_parameters(self.fitted.parameters[: len(start.parameter_names)])
+        return start.with_parameters(self._parameters[: len(start.parameter_names)])
 
     def artefact(self, name: str) -> Artefact:
         """As it is stated."""
@@ -120,14 +123,16 @@ class RunningFit:
             known = ", ".join(f"'{name}'" for name in self._artefacts)
             raise UlnaInputError(f"artefact '{touch.artefact}' is not at hand; expected one of {known}. Name it.")
         self.touches.append(touch)
-        self._follow(touch)
+        if not touch.held_out:
+            self._follow(touch)
 
     def withdraw(self, number: int, reason: str) -> None:
         """A touch that shall not count; it stays in `touches`. Raises UlnaInputError where there is none such."""
         for k, touch in enumerate(self.touches):
             if touch.number == number and touch.withdrawn is None:
                 self.touches[k] = replace(touch, withdrawn=reason)
-                self._follow(touch)
+                if not touch.held_out:
+                    self._follow(touch)
                 return
         raise UlnaInputError(f"touch {number}: there is none, or it was withdrawn before; expected one that counts.")
 
@@ -193,30 +198,70 @@ class RunningFit:
         rest = [each for each in self.counting() if (each.artefact, each.standing) != (artefact, standing)]
         return SoFar(len(rest), len(covariance), 0, [], covariance, triangle)
 
+    def tell(self) -> Identification:
+        """What the touches that count determine, with why and what to do where they do not: of the last fit, or at the
+        arm where it began. Raises UlnaInputError where there are none."""
+        if self.fitted is not None and self.fresh:
+            return Identification.from_core(self.fitted.identifiability)
+        return identify(self.study())
+
+    def could_tell(self, readings: Readings) -> Identification:
+        """The same of any readings of an artefact, at the arm as it is known."""
+        return identify(self._study_of(readings))
+
     def rows_of(self, readings: Readings) -> F64:
         """(R, F) whitened rows of any readings of an artefact as it is certified, standing by standing, at the arm as
         it is known."""
         import ulna._core as _core
 
-        certain = replace(readings, artefact=kind_of(readings.artefact).certain(readings.artefact))
-        study = Study(Path(LABEL), self.arm, [certain], self._noise, self._fit)
-        assembled = assemble(study)
+        assembled = assemble(self._study_of(readings))
         rows, _ = _core.whitened_rows(assembled.problem, assembled.hold)
         more = len(self.free()) - rows.shape[1]
         return np.concatenate([rows, np.zeros((len(rows), more))], axis=1) if more else rows
 
+    def _study_of(self, readings: Readings) -> Study:
+        certain = replace(readings, artefact=kind_of(readings.artefact).certain(readings.artefact))
+        return Study(Path(LABEL), self.arm, [certain], self._noise, self._fit)
+
     def counting(self) -> list[Touch]:
-        """The touches that were not withdrawn."""
+        """The touches that are fitted."""
         return counting(self.touches)
+
+    def whole_study(self) -> Study:
+        """The same as `study` with the touches that are held out behind those of the same artefact. Raises
+        UlnaInputError where there are none."""
+        self.study()
+        return self._study([*counting(self.touches), *held_out(self.touches)])
 
     def refit(self, search: bool = False) -> _core.Fitted:
         """The fit of the touches that count, from where the last one ended. search: whether a poor minimum is left for
-        others. Raises UlnaInputError."""
+        others. Raises UlnaInputError; where that is as they are too few, the arm is what they and the drawing say."""
         study = self.study()
         assembled = assemble(study)
-        self.fitted = run_assembled(study, assembled, from_parameters=self._from(assembled), search=search)
+        self.fresh = False
+        try:
+            self.fitted = run_assembled(study, assembled, from_parameters=self._from(assembled), search=search)
+        except UlnaInputError:
+            if self.fitted is None:
+                self._with_drawing(study)
+            raise
+        self.fresh = True
         self._parameters, self._names = self.fitted.parameters, assembled.names
         variance = self.fitted.variance
         self._sigma = float(np.sqrt(variance)) if np.isfinite(variance) else None
         self._look_at(study, assembled)
         return self.fitted
+
+    def _with_drawing(self, study: Study) -> None:
+        """The arm by the touches and by what the drawing is known by, as `so_far` weighs them: there is none by the
+        touches alone yet, and where an artefact stands is told by the arm."""
+        options = study.fit
+        drawn = Prior(1.0, length_mm=options.known_length_mm, angle_rad=options.known_angle_rad)
+        leaning = replace(study, fit=replace(options, prior={"*": drawn}))
+        assembled = assemble(leaning)
+        try:
+            found = run_assembled(leaning, assembled, from_parameters=self._from(assembled), search=False)
+        except UlnaInputError:
+            return
+        self._parameters, self._names = found.parameters, assembled.names
+        self._look_at(study, assemble(study))

@@ -25,6 +25,14 @@ class Hello:
     """What it is, for people."""
     rate_hz: float | None = None
     """Samples a second, where the source knows."""
+    counts_per_turn: tuple[float, ...] | None = None
+    """Of each channel, where the device tells it."""
+
+    def counts_of(self, names: Sequence[str]) -> list[float] | None:
+        """Counts per turn of some of its channels; None where the device does not tell them."""
+        if self.counts_per_turn is None:
+            return None
+        return [self.counts_per_turn[self.channels.index(name)] for name in names]
 
 
 @dataclass(frozen=True)

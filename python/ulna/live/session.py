@@ -16,15 +16,18 @@ from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import DOUBTFUL, Fault
+from ulna.live.fresh import Fresh, done, next_fresh, stands_still
 from ulna.live.guide import Guide, Suggestion
 from ulna.live.journal import Journal
+from ulna.live.lacking import Lacking, lacking, never
 from ulna.live.places import Expected, Tip, Told, tell
 from ulna.live.postures import travel_of
+from ulna.live.purpose import options_of
 from ulna.live.resting import Rests
 from ulna.live.ring import Ring
 from ulna.live.running import RunningFit, SoFar
 from ulna.live.stream import Frames, Stream
-from ulna.live.touches import Touch, as_dict, tips
+from ulna.live.touches import Touch, as_dict, held_out, present, tips
 from ulna.live.trigger import Refused, Taken, same_pose
 from ulna.live.worth import Worth
 from ulna.planning.spec import PlanSpec
@@ -50,6 +53,10 @@ class Meter:
     touches_more: int | None
     """About how many to the goal."""
     next: Suggestion
+    lacking: Lacking
+    """What is lost, and what is weak."""
+    fresh: Fresh | None = None
+    """Of the places that are held out; None as long as touches are fitted."""
 
 
 @dataclass(frozen=True)
@@ -81,15 +88,11 @@ def _check_signs(arm: Arm) -> None:
         )
 
 
-def _options(spec: PlanSpec) -> FitOptions:
-    return FitOptions(hold=list(spec.hold), known_length_mm=spec.known_length_mm, known_angle_rad=spec.known_angle_rad)
-
-
 class Session:
     """Touches of one artefact by one arm.
 
     spec: what is touched, what the readings' noise is, where it can stand and what lengths the arm is for, as of a
-    plan.
+    plan. fit: what is fitted, as of a study; without it all that the plan does not hold.
     """
 
     def __init__(
@@ -99,6 +102,7 @@ class Session:
         stream: Stream,
         journal: Journal | None = None,
         *,
+        fit: FitOptions | None = None,
         goal_u_mm: float | None = None,
         by_itself: bool = True,
         keep_all: bool = False,
@@ -114,15 +118,18 @@ class Session:
         self.arm, self.spec, self.stream, self.journal = arm, spec, stream, journal
         self.goal_u_mm, self.by_itself, self.keep_all = goal_u_mm, by_itself, keep_all
         noise = Noise(spec.encoder_rad, spec.seat_mm or None)
-        self.fit = RunningFit(arm, [spec.artefact], noise, _options(spec))
+        self.fit = RunningFit(arm, [spec.artefact], noise, fit or options_of(spec))
         self.guide = Guide(self.fit, spec)
         self.determinable = self.guide.determinable
+        self._never = never(self.fit, self.guide)
         self.place = 0
         """Number of the place where the artefact stands; 0 before the first touch."""
         self._probe = arm.probe_index(spec.probe)
         self._suggestion: Suggestion | None = None
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
         self._rests = Rests(stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself)
+        self.fresh_places = 0
+        """Fresh places that are asked for: touches are held out; 0: they are fitted."""
         self.no_fit: str | None = None
         """Why the touches so far are not fitted, in words; None: they are, or there are none."""
 
@@ -130,11 +137,11 @@ class Session:
 
     def feed(self, frames: Frames) -> Iterator[Event]:
         """What came, in order; what happened with it."""
-        for fault in frames.faults:
+        if any(fault.kind in DOUBTFUL for fault in frames.faults):
+            self._rests.forget()
+        for fault in frames.told:
             if self.journal is not None:
                 self.journal.event({"fault": fault.as_dict()})
-            if fault.kind in DOUBTFUL:
-                self._rests.forget()
             yield fault
         samples = frames.samples
         if not len(samples):
@@ -143,7 +150,7 @@ class Session:
             self.journal.samples(samples)
         self._ring.push(samples)
         for window in self._rests.windows(samples, frames.q_rad):
-            found = self._rests.ask() if window.button else self._rests.look(window)
+            found = self._rests.ask(window) if window.button else self._rests.look(window)
             if found is not None:
                 yield self._answer(found)
 
@@ -167,6 +174,21 @@ class Session:
             self.journal.event({"place": self.place})
         self._suggestion = None
 
+    def hold_out(self, places: int) -> None:
+        """From now on touches are not fitted, but judge the fit, in so many fresh places; 0: they are fitted again.
+        Raises UlnaInputError where there is nothing to judge."""
+        if places and self.fit.fitted is None:
+            raise UlnaInputError(
+                f"held out: {len(self.fit.counting())} touches are too few for a fit; expected one to be judged. Touch "
+                "on where it is suggested, then hold out."
+            )
+        self.fresh_places = places
+        if self.journal is not None:
+            self.journal.event({"held_out": places})
+        self.moved()
+        if self.journal is not None:
+            self.journal.flush()
+
     def withdraw(self, number: int, reason: str) -> None:
         """A touch shall not count; nothing of it is deleted. Raises UlnaInputError."""
         self.fit.withdraw(number, reason)
@@ -174,14 +196,17 @@ class Session:
             self.journal.withdraw({"number": number, "reason": reason})
         self._refit()
 
-    def go_on(self, touches: list[Touch]) -> None:
-        """With touches of a session that was interrupted."""
+    def go_on(self, touches: list[Touch], fresh_places: int = 0) -> None:
+        """With touches of a session that was interrupted; fresh_places: for how many it was holding out."""
+        self.fresh_places = fresh_places
         for touch in touches:
             self.fit.add(replace(touch, withdrawn=None))
         for touch in touches:
             if touch.withdrawn is not None:
                 self.fit.withdraw(touch.number, touch.withdrawn)
         self.place = max((int(touch.standing) for touch in touches), default=0)
+        if any(each.held_out != bool(fresh_places) for each in self._own()):
+            self.place += 1  # what judges stands in no place of what is fitted
         self._refit()
 
     # ------------------------------------------------------------ what is known
@@ -190,10 +215,24 @@ class Session:
         """What is known now, and where to touch next."""
         so_far = self.fit.so_far()
         worth = self.guide.worth(so_far)
+        if self.fresh_places:
+            return self._holding_out(so_far, worth)
         suggestion = self.guide.next(so_far, str(self.place) if self.place else None)
         self._suggestion = suggestion
         more = None if self.goal_u_mm is None else self.guide.touches_more(so_far, self.goal_u_mm)
-        return Meter(so_far, self.determinable, worth, self.goal_u_mm, more, suggestion)
+        return Meter(so_far, self.determinable, worth, self.goal_u_mm, more, suggestion, self._lacking(so_far))
+
+    def _holding_out(self, so_far: SoFar, worth: Worth) -> Meter:
+        held, artefact, place = held_out(self.fit.touches), self.spec.artefact, max(self.place, 1)
+        own = [touch for touch in held if touch.standing == str(place)]
+        self._suggestion = suggestion = next_fresh(self.guide, artefact, place, own)
+        fresh = Fresh(self.fresh_places, done(self.guide, artefact, held))
+        known = self._lacking(so_far)
+        return Meter(so_far, self.determinable, worth, self.goal_u_mm, None, suggestion, known, fresh)
+
+    def _lacking(self, so_far: SoFar) -> Lacking:
+        # of one touch in each place nothing can be said: no row of them is left
+        return lacking(self.fit.tell(), self._never) if so_far.determined else Lacking(self._never)
 
     @property
     def rests(self) -> float:
@@ -246,10 +285,14 @@ class Session:
             if self._suggestion is not None:
                 self.guide.refused(self._suggestion)
             return Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
+        if self.fresh_places and self._stands_still(found, told):
+            return Refused("it stands where it was touched before: put it in a fresh place, to judge by")
         self.place = self.place + 1 if told.moved else max(self.place, 1)
         touch = self._touch(found, told.feature)
         self._keep(touch)
         self.fit.add(touch)
+        if touch.held_out:
+            return Happened(touch, told.moved, self._scatter(touch), None, None)
         self._refit()
         off_mm, times = self._off(touch)
         return Happened(touch, told.moved, self._scatter(touch), off_mm, times)
@@ -267,11 +310,20 @@ class Session:
             samples=found.stillness.samples,
             spread_mm=found.stillness.spread_mm,
             drift_mm=found.stillness.drift_mm,
+            held_out=bool(self.fresh_places),
         )
 
     def _own(self) -> list[Touch]:
         name, place = self.spec.artefact.name, str(self.place)
-        return [each for each in self.fit.counting() if (each.artefact, each.standing) == (name, place)]
+        return [each for each in present(self.fit.touches) if (each.artefact, each.standing) == (name, place)]
+
+    def _stands_still(self, found: Taken, told: Told) -> bool:
+        """Whether what is to be a fresh place is none."""
+        if self._own() and not told.moved:
+            return False
+        others = present(self.fit.touches)
+        earlier_mm = tips(self.arm_now, others) if others else np.zeros((0, 3))
+        return stands_still(self.spec.artefact, earlier_mm, self._tip_mm(found.q_rad))
 
     def _again(self, found: Taken, told: Told) -> int | None:
         own = [] if told.moved else [each for each in self._own() if each.feature == told.feature]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ulna.ground.arrays import F64
 from ulna.live.faults import Fault
+from ulna.live.floods import Floods
 from ulna.live.mapping import Mapping
 from ulna.live.plausible import Plausible
 from ulna.live.registry import open_source
@@ -25,6 +26,9 @@ class Frames:
     q_rad: F64
     """(N, n) encoder angles, turns counted."""
     faults: list[Fault]
+    """All of them."""
+    told: list[Fault]
+    """What is shown and kept of them, and of those before: see `Floods`."""
 
 
 class Stream:
@@ -37,13 +41,23 @@ class Stream:
         self.stated = stated
         self.mapping = Mapping(stated.file.map, source.hello, stated.path, angles)
         self.plausible = Plausible(self.mapping, stated.file.limits, source.hello.rate_hz)
+        self._floods = Floods()
 
     def read(self, timeout_s: float) -> Frames:
-        """As `Source.read`. Raises SourceEnded; what was wrong at the end is in `source.faults()`."""
+        """As `Source.read`. Raises SourceEnded; what was wrong at the end `ended` has."""
         samples = self.source.read(timeout_s)
         found, resets = self.plausible.look(samples)
         q_rad = self.mapping.q_rad(samples, resets)
-        return Frames(samples, q_rad, [*self.source.faults(), *found, *self.mapping.faults()])
+        faults = [*self.source.faults(), *found, *self.mapping.faults()]
+        return Frames(samples, q_rad, faults, self._floods.told(faults))
+
+    def ended(self, why: str | None = None) -> Frames:
+        """When no more is read: what was wrong at the end, and what was only counted so far; no sample. why: the end
+        itself, which is not told as a fault again."""
+        faults = self.source.faults()
+        told = self._floods.told(fault for fault in faults if fault.text != why) + self._floods.rest()
+        none = Samples.none(len(self.source.hello.channels))
+        return Frames(none, self.mapping.q_rad(none, ()), faults, told)
 
     @property
     def doubtful(self) -> bool:

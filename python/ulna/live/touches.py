@@ -41,11 +41,23 @@ class Touch:
     """How far the tip moved along a straight line over the dwell."""
     withdrawn: str | None = None
     """Why it does not count; None: it counts."""
+    held_out: bool = False
+    """Whether it is not fitted: kept to judge the fit by."""
+
+
+def present(touches: Sequence[Touch]) -> list[Touch]:
+    """Those that were not withdrawn, fitted or held out."""
+    return [touch for touch in touches if touch.withdrawn is None]
 
 
 def counting(touches: Sequence[Touch]) -> list[Touch]:
-    """Those that were not withdrawn."""
-    return [touch for touch in touches if touch.withdrawn is None]
+    """Those that are fitted."""
+    return [touch for touch in present(touches) if not touch.held_out]
+
+
+def held_out(touches: Sequence[Touch]) -> list[Touch]:
+    """Those that are not, and judge the fit."""
+    return [touch for touch in present(touches) if touch.held_out]
 
 
 def leaf_of(touch: Touch, artefact: Artefact) -> tuple[str, str]:

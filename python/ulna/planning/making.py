@@ -12,7 +12,7 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.artefact import Artefact
 from ulna.artefacts.kinds import kind_of
 from ulna.formats.toml_text import toml_key, toml_value
-from ulna.ground.errors import UlnaInputError
+from ulna.planning.from_study import planned, travel_read
 from ulna.simulation.study_files import artefact_table, features_file
 from ulna.study.data import FitOptions
 from ulna.study.study import Study
@@ -89,22 +89,10 @@ def _artefact(arm: Arm, study: Study | None, reach_mm: float, folder: Path) -> l
             'kind = "bar"',
             f"length = {length} # an example, {100 * ABOUT_BAR:.0f} % of the reach: yours, as certified",
         ]
-    if study.arm.n != arm.n:
-        raise UlnaInputError(
-            f"option --study: {study.label} is of an arm with {study.arm.n} joints, ARM has {arm.n}; expected as many. "
-            "Name another."
-        )
-    artefacts = {group.artefact.name: group.artefact for group in study.readings}
-    planned = [each for each in artefacts.values() if each.kind != "length"]
-    if not planned:
-        raise UlnaInputError(
-            f"option --study: {study.label} has no artefact that a plan can put somewhere; expected a bar, a seat, "
-            "points or a surface. Leave the option out."
-        )
-    artefact = planned[0]
+    found = planned(study, arm, "option --study: ")
+    artefact = found[0]
     table = {"kind": artefact.kind, **artefact_table(artefact)}
-    table.pop("fit", None)
-    others = [f"# others of that study: {', '.join(each.name for each in planned[1:])}"] if planned[1:] else []
+    others = [f"# others of that study: {', '.join(each.name for each in found[1:])}"] if found[1:] else []
     head = f"[artefact.{toml_key(artefact.name)}]"
     return ["", *others, head, *(f"{key} = {value}" for key, value in _told(artefact, table, study, folder))]
 
@@ -141,13 +129,9 @@ def _travel(arm: Arm, study: Study | None) -> list[str]:
     readings go, without a study an example."""
     if all(joint.travel_rad is not None for joint in arm.joints):
         return ["", "# how far joints turn: the arm file says it"]
-    groups = [] if study is None else study.readings
-    read = [q_rad for group in groups for q_rad in (group.q_rad, group.p_rad) if q_rad is not None]
-    read_rad = np.concatenate(read) if read else np.array([[-3.14] * arm.n, [3.14] * arm.n])
     why = "an example" if study is None else "as the study's readings go"
     lines = ["", "[travel] # rad", "limits = ["]
-    for k, joint in enumerate(arm.joints, start=1):
-        low, high = joint.travel_rad or (read_rad[:, k - 1].min(), read_rad[:, k - 1].max())
+    for k, (joint, ends) in enumerate(zip(arm.joints, travel_read(arm, study), strict=True), start=1):
         mark = "" if joint.travel_rad is not None else f": {why}"
-        lines.append(f"    {toml_value([float(low), float(high)])}, # joint {k}{mark}")
+        lines.append(f"    {toml_value([float(end) for end in ends])}, # joint {k}{mark}")
     return [*lines, "]"]

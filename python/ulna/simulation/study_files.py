@@ -25,6 +25,8 @@ from ulna.study.study import Study
 
 #: keys of [fit] that are said as they are, where they are not as usual
 FIT_KEYS = ("hold", "free", "loss", "start", "extras", "harmonics", "judge_extras")
+KNOWN = {"known_length": "known_length_mm", "known_angle": "known_angle_rad"}
+"""Keys of [fit] with a unit, in the study's mm and rad, and their fields."""
 
 
 def names_for(artefacts: Iterable[Artefact]) -> list[str]:
@@ -47,13 +49,15 @@ def texts(study: Study, truth: Arm, account: dict[str, Any]) -> dict[str, str]:
     }
 
 
-def study_toml(study: Study, counts: bool) -> str:
-    """The text of a study file for readings beside it."""
+def study_toml(study: Study, counts: bool, split: Mapping[str, str] | None = None) -> str:
+    """The text of a study file for readings beside it. split: the key of all readings, where some are kept to check."""
     lines = ['format = "ulna-study/1"', 'arm = "arm.toml"', 'units = { length = "mm", angle = "rad" }']
     for group in study.readings:
-        table = {"file": f"{group.artefact.name}.csv", "artefact": group.artefact.name}
+        table: dict[str, Any] = {"file": f"{group.artefact.name}.csv", "artefact": group.artefact.name}
         if counts:
             table["angle"] = "counts"
+        if split is not None:
+            table["split"] = dict(split)
         if not _several_probes(group):
             table["probe"] = list(study.arm.probes)[int(group.probe[0])]
         lines += _table("[[readings]]", table)
@@ -65,17 +69,22 @@ def study_toml(study: Study, counts: bool) -> str:
     fit = {key: getattr(study.fit, key) for key in FIT_KEYS if getattr(study.fit, key) != getattr(usual, key)}
     if study.fit.auto:
         fit["extras"] = AUTO
+    other = {key: name for key, name in KNOWN.items() if getattr(study.fit, name) != getattr(usual, name)}
+    fit |= {key: getattr(study.fit, name) for key, name in other.items()}
     if fit:
         lines += _table("[fit]", fit)
     return "\n".join(lines) + "\n"
 
 
-def write_tables(study: Study, step_rad: F64 | None, folder: Path) -> None:
-    """The readings, and the features of points, into a folder."""
+def write_tables(
+    study: Study, step_rad: F64 | None, folder: Path, beside: Mapping[str, pl.Series] = MappingProxyType({})
+) -> None:
+    """The readings, and the features of points, into a folder. beside: of an artefact one column more."""
     for group in study.readings:
-        readings_table(group, list(study.arm.probes), step_rad, study.arm.payloads).write_csv(
-            folder / f"{group.artefact.name}.csv"
-        )
+        table = readings_table(group, list(study.arm.probes), step_rad, study.arm.payloads)
+        if group.artefact.name in beside:
+            table = table.with_columns(beside[group.artefact.name])
+        table.write_csv(folder / f"{group.artefact.name}.csv")
         if kind_of(group.artefact).features_file:
             features_table(group.artefact).write_csv(folder / features_file(group.artefact))
 

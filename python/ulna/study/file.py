@@ -47,6 +47,28 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
     document, digest = _document(path)
     file = fill(StudyFile, document, path)
     split = _check_rows(file, path, rows)
+    study, artefacts = _stated(file, path, digest, make)
+    arm, remarks = study.arm, study.warnings
+    study.readings = _readings(file, path, arm, path.parent / file.arm, artefacts, study.files, remarks, rows)
+    study.rows = rows if split else None
+    remark_vain_payloads(study)
+    with_options(study)  # what cannot be asked is told now, not after the work
+    check_patterns(study)
+    for remark in remarks:
+        python_warnings.warn(remark, InputWarning, stacklevel=3)
+    return study
+
+
+def load_waiting(path: Path, make: type[AnyStudy]) -> AnyStudy:
+    """A study of readings to come: all that it says beside them, and of each artefact none. Raises UlnaInputError."""
+    document, digest = _document(path)
+    study, artefacts = _stated(fill(StudyFile, document, path), path, digest, make)
+    study.readings = [Readings.none(artefact, study.arm.n) for artefact in artefacts.values()]
+    return study
+
+
+def _stated(file: StudyFile, path: Path, digest: str, make: type[AnyStudy]) -> tuple[AnyStudy, dict[str, Artefact]]:
+    """A study without its readings, and all artefacts that it knows. Raises UlnaInputError."""
     arm_path = path.parent / file.arm
     arm, arm_digest = Arm.load_and_hash(arm_path)
     payloads = joined_payloads(arm.payloads, payloads_of(file.payload, file.units, path), path)
@@ -62,14 +84,7 @@ def load_study(path: Path, rows: Rows, make: type[AnyStudy]) -> AnyStudy:
         artefacts[name] = made(name, stated(name, table, place), place)
         if isinstance(table, LentTable):
             artefacts[name] = replace(artefacts[name], record=table.record)
-    readings = _readings(file, path, arm, arm_path, artefacts, files, remarks, rows)
-    study = make(path, arm, readings, noise, fit, files, remarks, rows if split else None)
-    remark_vain_payloads(study)
-    with_options(study)  # what cannot be asked is told now, not after the work
-    check_patterns(study)
-    for remark in remarks:
-        python_warnings.warn(remark, InputWarning, stacklevel=3)
-    return study
+    return make(path, arm, [], noise, fit, files, remarks), artefacts
 
 
 def study_file(path: Path) -> StudyFile:

@@ -14,7 +14,7 @@ from ulna.arm.payload import Payload
 from ulna.ground.shown import About, Shown
 from ulna.study.about import about_study
 from ulna.study.data import StudyData
-from ulna.study.file import load_study
+from ulna.study.file import load_study, load_waiting
 from ulna.study.frames import Asked, study_of_frame
 
 
@@ -29,6 +29,12 @@ class Study(Shown, StudyData):
         rows: where the study has a split, the rows to fit, the rows kept to check the fit, or both.
         """
         return load_study(Path(path), rows, cls)
+
+    @classmethod
+    def waiting(cls, path: str | Path) -> Self:
+        """A study file whose readings are still to come: of each of its artefacts there is none. Raises
+        UlnaInputError."""
+        return load_waiting(Path(path), cls)
 
     @classmethod
     def from_frame(

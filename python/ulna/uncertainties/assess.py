@@ -194,7 +194,7 @@ def assess(
         arms=None if arms is None else arms.shares,
         left_out=[
             *([] if arms is None else arms.assumed),
-            *left_out(arm, task.noise, task.u_temperature_k, found.exact, task.touched.measurand.left_out),
+            *left_out(arm, task.noise, task.u_temperature_k, found.exact, task.left_out(arm)),
         ],
         seed=seed,
         most_trials=most_trials,

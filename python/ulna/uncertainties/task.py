@@ -17,6 +17,8 @@ from ulna.uncertainties.measurands import Touched
 BLOCK = 1000
 """Trials that share one generator: trial k draws from (seed, k // BLOCK), so the cut does not matter."""
 
+UNSTATED_BALL = "the probe's ball: the arm file does not state its diameter, so that of its centres is given"
+
 
 @dataclass(frozen=True)
 class Task:
@@ -39,7 +41,7 @@ class Task:
     u_temperature_k: float = 0.0
     """Standard uncertainty of that, the same for all touches."""
     inside: bool = False
-    """Of a ball: a hollow, touched from within."""
+    """Of a ball, a hollow, of a circle a hole: touched from within."""
     p: float = 0.95
     """Coverage probability."""
     digits: int = 2
@@ -54,13 +56,21 @@ class Task:
         warm = None if self.temperature_c is None else self.temperature_c + warmer_k
         return {"temperature_c": warm, "approach": self.approach, "payload": self.payload}
 
-    def values(self, arm: Arm, tips_mm: F64) -> F64:
-        """(T, N, 3) tips → (T, values): the measurand's, of a ball with the probe's own taken off."""
-        values = self.touched.values(tips_mm)
-        if self.touched.kind == "ball":
+    def values(self, arm: Arm, tips_mm: F64, like_mm: F64 | None = None) -> F64:
+        """(T, N, 3) tips → (T, values): the measurand's, of a diameter with the probe's own ball taken off. like_mm: as
+        `Touched.values` has it."""
+        values = self.touched.values(tips_mm, like_mm)
+        measurand = self.touched.measurand
+        if measurand.diameter is not None:
             own = arm.probes[self.probe].ball_mm or 0.0
-            values = values + np.array([0.0, 0.0, 0.0, own if self.inside else -own])
+            values[:, list(measurand.units).index(measurand.diameter)] += own if self.inside else -own
         return values
+
+    def left_out(self, arm: Arm) -> tuple[str, ...]:
+        """What the uncertainty of what is measured never has, in words."""
+        measurand = self.touched.measurand
+        bare = measurand.diameter is not None and not arm.probes[self.probe].ball_mm
+        return (*measurand.left_out, *((UNSTATED_BALL,) if bare else ()))
 
     def drawn(self, arm: Arm, parameters: F64, first: int, seed: int) -> F64:
         """(T, values) of trials first … first + T − 1, each with its own row of parameters (T, P) and with encoders,
@@ -82,7 +92,7 @@ class Task:
         more = self.inflated(first, count, seed)
         own_mm = np.sqrt(self.noise.estimated_mm2 * more**2 + self.noise.stated_mm2)
         tips += own_mm[:, None, None] * noise[:, :, arm.n : arm.n + 3]
-        return self.values(arm, tips)
+        return self.values(arm, tips, self.tips_mm(arm, self.q_rad))
 
     def inflated(self, first: int, count: int, seed: int) -> F64:
         """(count,) by how much what the calibration estimated from its residuals is larger in each trial, √(ν / χ²_ν):

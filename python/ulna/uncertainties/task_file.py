@@ -27,6 +27,7 @@ from ulna.study.readings.payloads import carried_in
 from ulna.study.readings.readings import WHAT as WHAT_READINGS
 from ulna.study.readings.readings import angle_factors, angles
 from ulna.study.tables import NoiseTable
+from ulna.uncertainties.measurands import MEASURANDS
 
 WHAT = 'a task file (TOML, format = "ulna-task/1")'
 
@@ -59,17 +60,18 @@ class TaskFile(Strict):
     """A measurement."""
 
     format: str
-    kind: Literal["point", "length", "ball", "sphericity", "plane", "flatness", "distance"]
+    kind: Literal["point", "length", "ball", "sphericity", "circle", "roundness", "plane", "flatness", "distance"]
     """point: coordinates of what is touched; length: between A and B; ball: centre and diameter of what is touched on
-    its surface; plane: normal and distance from the origin; sphericity, flatness: how far the surface is from them;
-    distance: of point from plane."""
+    its surface; circle: centre, diameter and normal of a hole or a shaft touched around; plane: normal and distance
+    from the origin; sphericity, roundness, flatness: how far the surface is from them; distance: of point from
+    plane."""
     units: Units
     readings: TaskReadings
     noise: NoiseTable | None = None
     """In place of what the calibration's study stated."""
     temperature: TemperatureTable | None = None
     inside: bool = False
-    """ball only: a hollow, touched from within."""
+    """ball and circle only: a hollow, a hole, touched from within."""
     p: Coverage = 0.95
     """Coverage probability."""
     digits: Literal[1, 2] = 2
@@ -109,9 +111,10 @@ def read_task(path: Path, arm: Arm, features: dict[str, list[str]], remarks: lis
     document, _ = read_toml(path, WHAT)
     check_format(document, path, "ulna-task")
     file = fill(TaskFile, document, path)
-    if file.inside and file.kind != "ball":
+    if file.inside and MEASURANDS[file.kind].diameter is None:
+        round_ones = " or ".join(f'"{kind}"' for kind, each in MEASURANDS.items() if each.diameter is not None)
         raise UlnaInputError(
-            f"{path}: key 'inside': a {file.kind} has no inside; expected it with kind = \"ball\". Remove it."
+            f"{path}: key 'inside': a {file.kind} has no inside; expected it with kind = {round_ones}. Remove it."
         )
     check_temperature(file.temperature, arm, path)
     source_file = path.parent / file.readings.file

@@ -7,7 +7,7 @@ from typing import Any
 import typer
 
 from ulna.cli.help import Command, Group
-from ulna.cli.live import commission, looking, measuring, recording, touching
+from ulna.cli.live import commission, geometry, looking, measuring, recording, touching
 
 app = typer.Typer(
     cls=Group,
@@ -21,6 +21,7 @@ app = typer.Typer(
 )
 TOPICS: tuple[dict[str, Any], ...] = (
     looking.COMMANDS,
+    geometry.COMMANDS,
     commission.COMMANDS,
     touching.COMMANDS,
     measuring.COMMANDS,

@@ -14,16 +14,19 @@ from rich.console import RenderableType
 from ulna.cli.live.keys import pressed
 from ulna.cli.live.rounds import Round
 from ulna.cli.live.watching import read_on
-from ulna.cli.printed.touching import happened_lines, meter_lines, record_of, screen
+from ulna.cli.printed.lacking import lacking_lines
+from ulna.cli.printed.touching import happened_lines, held_out_lines, meter_lines, record_of, screen
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import Fault
+from ulna.live.fresh import USUAL
 from ulna.live.session import Event, Happened, Meter, Session
 from ulna.live.stream import Frames
+from ulna.live.touches import present
 from ulna.live.trigger import Refused
 
 FRAMES_HZ = 20.0
 """A screen that is read while both hands are on an arm need not be faster; samples are, all the same."""
-KEYS = {" ": "touch", "n": "moved", "w": "withdraw", "t": "trust", "q": "end"}
+KEYS = {" ": "touch", "n": "moved", "w": "withdraw", "h": "hold-out", "t": "trust", "q": "end"}
 """Key → the word that does the same."""
 LAST = 4
 """Sentences that stay on the screen."""
@@ -32,16 +35,31 @@ LAST = 4
 class Bench:
     """A session with somebody at it."""
 
-    def __init__(self, session: Session, as_json: bool, touches: int | None, seconds: float | None) -> None:
+    def __init__(
+        self,
+        session: Session,
+        as_json: bool,
+        touches: int | None,
+        seconds: float | None,
+        held_out: int | None = None,
+    ) -> None:
+        """held_out: fresh places with which it ends; None: they are offered."""
         self.session = session
-        self.as_json, self.touches, self.seconds = as_json, touches, seconds
+        self.as_json, self.touches, self.seconds, self.held_out = as_json, touches, seconds, held_out
+        self._offered = False
+        """Whether the end was said."""
+        self._begun = False
+        """Whether anything was held out: what goes back to fitting is left there."""
         self.meter: Meter | None = None
         self.said: list[str] = []
+        self.lacking: list[str] = []
+        """What is not known, in words: made anew where it is not the same any more."""
+        self._told: object = None
         self._ended = False
 
     def run(self) -> None:
         """Until it is ended: by a key or a word, after so many touches or seconds, by the source or by Ctrl-C."""
-        self._known()
+        self._look()
         at_terminal = sys.stdout.isatty() and not self.as_json
         with _asking() as words, _showing(at_terminal) as show:
 
@@ -52,7 +70,7 @@ class Bench:
                     self._do(word)
 
             def tick(known: Round) -> None:
-                show(screen(self.session, self.meter, self.said))
+                show(screen(self.session, self.meter, self.lacking, self.said))
 
             known = read_on(self.session.stream, self.seconds, each, tick, FRAMES_HZ, lambda: self._ended)
         if known.why is not None:
@@ -71,6 +89,8 @@ class Bench:
                     self._known()
                 case "withdraw":
                     self._withdraw(rest)
+                case "hold-out":
+                    self._hold_out(rest)
                 case "trust":
                     self.session.trust()
                     self._tell(["The angles are taken for right again."])
@@ -83,7 +103,7 @@ class Bench:
             self._tell([str(error)])
 
     def _withdraw(self, rest: str) -> None:
-        count = self.session.fit.counting()
+        count = present(self.session.fit.touches)
         number, _, reason = rest.partition(" ")
         if not number and count:
             number = str(count[-1].number)
@@ -104,19 +124,67 @@ class Bench:
                 self._tell([f"Not taken: {event.reason}."], told=self.as_json)
             case Happened():
                 _tone(True, self.as_json)
-                self._known()
                 names = list(self.session.spec.artefact.features)
                 self._tell(happened_lines(event, names), told=self.as_json)
-                if self.touches is not None and len(self.session.fit.counting()) >= self.touches:
-                    self._ended = True
+                self._look()
 
-    def _known(self) -> None:
+    def _hold_out(self, rest: str) -> None:
+        """Without a number it begins, and goes back to fitting where it has begun."""
+        if rest and not rest.isdecimal():
+            raise UlnaInputError(f"hold-out: got '{rest}'; expected how many fresh places, 0 to fit again. Name them.")
+        usual = 0 if self.session.fresh_places else self.held_out or USUAL
+        places = int(rest) if rest else usual
+        self._begin(places)
+        self._known()
+
+    def _begin(self, places: int) -> None:
+        self.session.hold_out(places)
+        self._begun, self._offered = True, False
+        self._tell(held_out_lines(places))
+
+    def _look(self) -> None:
+        """At the beginning, which may be the end of what was interrupted, and after each touch."""
+        meter = self.session.meter()
+        # whoever follows is told one thing to do next
+        self._known(None if self._turn(meter) else meter)
+
+    def _turn(self, meter: Meter) -> bool:
+        """Whether that was enough, to fit or to judge by; whether another way of touching begins."""
+        fresh, goal = meter.fresh, meter.goal_u_mm
+        if fresh is not None:
+            if fresh.done >= fresh.places:
+                self._ended = self.held_out is not None
+                self._offer(f"Fresh places touched: {fresh.done}, enough to judge by. q ends.")
+            return False
+        enough = self.touches is not None and len(self.session.fit.counting()) >= self.touches
+        fitted = self.session.fit.fitted is not None
+        reached = fitted and goal is not None and meter.worth.u_mm <= goal
+        if self.held_out is not None and not self._begun and fitted and (enough or reached):
+            self._begin(self.held_out)
+            return True
+        if enough:
+            self._ended = True
+        elif reached:
+            self._offer(f"Enough. Now {USUAL} fresh places, not fitted, to judge by: h (hold-out). Or q ends.")
+        return False
+
+    def _offer(self, text: str) -> None:
+        """Once."""
+        if not self._offered:
+            self._offered = True
+            self._tell([text])
+
+    def _known(self, meter: Meter | None = None) -> None:
         """What is known now, said."""
-        self.meter = self.session.meter()
+        self.meter = meter or self.session.meter()
+        told = self.meter.lacking.told
+        changed, self._told = told != self._told, told
+        if changed:
+            self.lacking = lacking_lines(self.meter.lacking)
         if self.as_json:
             print(json.dumps(record_of(self.meter), ensure_ascii=False, allow_nan=False), flush=True)
         elif not sys.stdout.isatty():
-            for line in meter_lines(self.meter):
+            for line in [*meter_lines(self.meter), *(self.lacking if changed else [])]:
                 print(line, flush=True)
 
     def _tell(self, lines: list[str], told: bool = False) -> None:

@@ -67,8 +67,8 @@ def commissioned(asked: Asked, as_json: bool) -> None:
             "Give --yes to take what is found."
         )
     check_output(asked.out, FILES, asked.force)
-    drawn = geometry(asked.arm, asked.joints, asked.reach_mm)
-    how = ways(drawn, "" if asked.arm is None else asked.arm.name) if asked.signs == "turned" else []
+    drawn = geometry(asked.arm, asked.joints, asked.reach_mm, asked.source)
+    how = ways(drawn, "the device" if asked.arm is None else asked.arm.name) if asked.signs == "turned" else []
     stands = _posture(drawn, asked)
     with streaming(asked.source, angles=False) as stream:
         table = stream.stated.file.map

@@ -24,16 +24,21 @@ def measure(
         typer.Option(
             "--feature",
             metavar="WORDS",
-            help="What touches become: point, length, ball, plane, distance; or of points: length p1 p2. Repeat it.",
+            help="What touches become: point, length, ball, circle, plane, distance; or of points: length p1 p2. "
+            "Repeat it.",
             show_default=False,
         ),
     ] = None,
-    still: Annotated[bool, typer.Option("--still", help="Each rest of the tip is a touch, without a key.")] = False,
+    still: Annotated[
+        bool, typer.Option("--still", help="Each rest of the tip is a touch, whatever the source file says.")
+    ] = False,
     to: Annotated[
         str | None,
         typer.Option("--to", metavar="POINT", help="Show distances to this point (p1, …); else to the last."),
     ] = None,
-    inside: Annotated[bool, typer.Option("--inside", help="Balls are hollows, touched from within.")] = False,
+    inside: Annotated[
+        bool, typer.Option("--inside", help="Balls are hollows, circles are holes: touched from within.")
+    ] = False,
     temperature: Annotated[
         float | None, typer.Option("--temperature", metavar="C", help="Of the arm, °C, where its links grow with it.")
     ] = None,
@@ -54,8 +59,9 @@ def measure(
     """Show where the tip is, x, y, z ± U (k = 2) of this arm at this place, and take points and features.
 
     In a terminal space takes a point, n begins a new feature, k changes its kind, u takes the last point back, q ends.
-    Elsewhere, and for programs (--json), --still or the arm's button takes them. What depends on what the calibration
-    could not determine has no number but a reason.
+    Elsewhere, and for programs (--json), the arm's button takes them, or a rest of the tip: with --still, or
+    trigger.by = "still" in the source file. What depends on what the calibration could not determine has no number but
+    a reason.
 
     Example: [bold]ulna live measure out/result.json source.toml --feature ball -o points.csv[/bold]
     """

@@ -20,11 +20,15 @@ from ulna.live.trigger import Refused
 if TYPE_CHECKING:
     from rich.live import Live
 
+STILL = "still"
+"""`trigger.by` of a source file by which rests are touches."""
+
 
 class Reading:
     """One read-out, whose stream is known once it is open."""
 
     def __init__(self, arm: Calibrated, notebook: Notebook, still: bool, to: str | None) -> None:
+        """still: each rest is a touch, whatever the source file says."""
         self.arm, self.notebook = arm, notebook
         self._still, self._to = still, to
         self.out: ReadOut | None = None
@@ -35,7 +39,8 @@ class Reading:
     def of(self, known: Round) -> ReadOut:
         """Raises UlnaInputError where the stream is not of such an arm."""
         if self.out is None:
-            self.out = ReadOut(known.stream, self.arm, self.notebook, self._still, self._to)
+            by_itself = self._still or known.stream.stated.file.trigger.by == STILL
+            self.out = ReadOut(known.stream, self.arm, self.notebook, by_itself, self._to)
         return self.out
 
     def press(self, keys: str) -> Iterator[Set | Refused]:
@@ -116,7 +121,7 @@ def _as_json(reading: Reading, source: str, seconds: float | None) -> Round:
 
     def each(known: Round, frames: Frames) -> None:
         out = reading.of(known)
-        for fault in frames.faults:
+        for fault in frames.told:
             _json("fault", fault.as_dict())
         _notes(out, told, lambda note: _json("note", {"text": note}))
         for said in out.take(frames, tips=True):
@@ -152,7 +157,7 @@ def _in_lines(reading: Reading, source: str, seconds: float | None) -> Round:
 
     def each(known: Round, frames: Frames) -> None:
         out = reading.of(known)
-        for fault in frames.faults:
+        for fault in frames.told:
             say(f"{fault.kind}: {fault.text}")
         for said in out.take(frames):
             if isinstance(said, Refused):

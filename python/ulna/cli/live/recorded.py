@@ -9,6 +9,8 @@ from types import TracebackType
 from urllib.parse import quote
 
 from ulna.cli.live.rounds import Round
+from ulna.ground.errors import UlnaInputError
+from ulna.live.faults import Fault
 from ulna.live.journal import Journal
 from ulna.live.relay import Relay
 from ulna.live.samples import Samples
@@ -16,27 +18,37 @@ from ulna.live.stream import Frames
 
 
 class Recording:
-    """A journal that begins with the first samples, so that a source that cannot be opened leaves none."""
+    """A journal that begins with the first samples: a source that cannot be opened, or sends none, leaves none."""
 
     def __init__(self, path: Path) -> None:
         """Raises UlnaInputError where there is a file already."""
-        from ulna.ground.errors import UlnaInputError
-
         if path.exists():
             raise UlnaInputError(f"{path}: exists already and is never overwritten. Name another file with -o.")
         self._path = path
         self._journal: Journal | None = None
+        self._before: list[Fault] = []
+        """What was wrong before the first sample."""
 
     def take(self, known: Round, frames: Frames) -> None:
         """What came."""
+        if not known.count:
+            self._before += frames.told
+            return
         journal = self._opened(known)
         journal.samples(frames.samples)
-        for fault in frames.faults:
+        for fault in (*self._before, *frames.told):
             journal.event(fault.as_dict())
+        self._before = []
 
     def end(self, known: Round) -> None:
-        """Why it ended."""
-        self._opened(known).event({"kind": "end", "text": known.why or "ended by the user.", "samples": known.count})
+        """Why it ended. Raises UlnaInputError where no reading came."""
+        if self._journal is None:
+            raise UlnaInputError(
+                f"{self._path}: not written, for no reading came from {known.stream.source.hello.device}; expected one "
+                "at the least. See what comes: ulna live watch"
+            )
+        why = known.why or "ended by the user."
+        self._journal.event({"kind": "end", "text": why, "samples": known.count})
 
     def _opened(self, known: Round) -> Journal:
         if self._journal is None:
@@ -65,9 +77,10 @@ class HandingOn:
 
     def take(self, known: Round, frames: Frames) -> None:
         """What came. Raises UlnaInputError where the other side is not there, or gone."""
-        from ulna.ground.errors import UlnaInputError
         from ulna.live.source import SourceEnded
 
+        if not len(frames.samples):
+            return
         if self._relay is None:
             self._relay = Relay(self._to, known.stream.source.hello)
         try:
@@ -88,7 +101,6 @@ class HandingOn:
 def write_csv(file: Path, out: Path, force: bool) -> int:
     """All samples of a recording as CSV, with all their digits; how many. Raises UlnaInputError."""
     from ulna.formats.output import new_file, refuse_inputs
-    from ulna.ground.errors import UlnaInputError
     from ulna.live.registry import opened
     from ulna.live.source import SourceEnded
 

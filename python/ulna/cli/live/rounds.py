@@ -6,7 +6,8 @@ import time
 from collections import deque
 from typing import Any
 
-from ulna.live.faults import Fault
+from ulna.ground.errors import UlnaInputError
+from ulna.live.faults import ENDED, Fault
 from ulna.live.stream import Frames, Stream
 
 _FAULTS = 5
@@ -21,6 +22,7 @@ class Round:
         self.counted: dict[str, int] = {}
         """Faults by kind."""
         self.last: deque[Fault] = deque(maxlen=_FAULTS)
+        """The newest that were told."""
         self.newest: Frames | None = None
         self.why: str | None = None
         """Why it ended."""
@@ -31,12 +33,20 @@ class Round:
         if len(frames.samples):
             self.newest = frames
             self._arrivals.append((time.monotonic(), self.count))
-        self.fault(frames.faults)
-
-    def fault(self, faults: list[Fault]) -> None:
-        for each in faults:
+        for each in frames.faults:
             self.counted[each.kind] = self.counted.get(each.kind, 0) + 1
-            self.last.append(each)
+        self.last.extend(frames.told)
+
+    def check_came(self) -> None:
+        """Raises UlnaInputError where the source ended and no reading came."""
+        if self.why is None or self.count:
+            return
+        said = [f"{each.text.rstrip('.')}. " for each in self.last if each.kind != ENDED]
+        remedy = "Say how it is written, in [decode] of a source file" if said else "Check the device, or the recording"
+        raise UlnaInputError(
+            f"source '{self.stream.stated.url.text}': it ended without a reading ({self.why.rstrip('.')}); expected "
+            f"one at the least. {''.join(said)}{remedy}."
+        )
 
     @property
     def rate_hz(self) -> float:

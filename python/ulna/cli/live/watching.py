@@ -43,7 +43,7 @@ def read_on(
     hz: float,
     ended: Callable[[], bool] = lambda: False,
 ) -> Round:
-    """The same with a stream that is open."""
+    """The same with a stream that is open. Raises UlnaInputError where it ends without a reading."""
     known = Round(stream)
     begin = shown = time.monotonic()
     with asked_to_end() as asked:  # Ctrl-C is the one way to end it, and a good one
@@ -52,13 +52,16 @@ def read_on(
                 frames = stream.read(1.0 / FRAMES_HZ)
             except SourceEnded as end:
                 known.why = str(end)
-                known.fault(stream.source.faults())
                 break
             known.take(frames)
             each(known, frames)
             if time.monotonic() - shown >= 1.0 / hz:
                 tick(known)
                 shown = time.monotonic()
+        last = stream.ended(known.why)
+        known.take(last)
+        known.check_came()
+        each(known, last)
         tick(known)
         return known
 
@@ -88,7 +91,7 @@ def show(source: str, seconds: float | None, each: Callable[[Round, Frames], Non
 def json_lines(known: Round, frames: Frames) -> None:
     """A sample an object, a fault an object."""
     samples, names = frames.samples, known.stream.source.hello.channels
-    lines = [json.dumps({"fault": fault.as_dict()}, ensure_ascii=False) for fault in frames.faults]
+    lines = [json.dumps({"fault": fault.as_dict()}, ensure_ascii=False) for fault in frames.told]
     for k in range(len(samples)):
         sample: dict[str, Any] = {"t_host_s": float(samples.t_host_s[k])}
         if samples.t_device_s is not None:
@@ -108,7 +111,7 @@ def _say_faults(each: Callable[[Round, Frames], None]) -> Callable[[Round, Frame
     from ulna.cli.output import say
 
     def both(known: Round, frames: Frames) -> None:
-        for fault in frames.faults:
+        for fault in frames.told:
             say(f"{fault.kind}: {fault.text}")
         each(known, frames)
 

@@ -34,8 +34,13 @@ def coverage_report(found: Coverage | None) -> list[RenderableType]:
     ]
     heads = ("", "judged", "inside", "share\n%", "its 95 %\ninterval, %")
     parts: list[RenderableType] = ["", table(f"Inside their stated {100 * P:g} % intervals", heads, rows)]
-    said = _too_small(found) or _too_large(found)
+    said = coverage_sentence(found)
     return [*parts, Text(said, style="bold yellow")] if said else parts
+
+
+def coverage_sentence(found: Coverage) -> str:
+    """Whether they hold, where chance does not explain how many do; else nothing."""
+    return _too_small(found) or _too_large(found)
 
 
 def _too_small(found: Coverage) -> str:

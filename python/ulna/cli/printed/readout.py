@@ -130,7 +130,10 @@ def notes(out: ReadOut) -> list[str]:
             f"Points and planes are of the centre of the probe's ball, {arm.ball_mm / 2.0:g} mm off what it touches."
         )
     else:
-        found.append("Points are of the centre of the probe's ball; of what size it is the arm file does not say.")
+        found.append(
+            "Points, and diameters, are of the centre of the probe's ball, whose size the arm file does not say."
+        )
+    found += arm.remarks
     limits = out.limits
     if limits is not None and not limits.sees:
         found.append("At this rate and noise the slowest hand cannot be told from one that rests.")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from ulna.cli.printed.lacking import LINES
 from ulna.ground.errors import for_people
 from ulna.live.faults import Fault
 from ulna.live.session import SUSPICIOUS, Event, Happened, Meter
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from ulna.live.session import Session
 
 _BAR = 10
+_KEYS = "space touch · n moved · w withdraw · h hold out · t angles right · q end"
 
 
 def meter_line(meter: Meter) -> str:
@@ -26,6 +28,10 @@ def meter_line(meter: Meter) -> str:
     known = min(meter.so_far.determined, meter.determinable)
     worth = meter.worth
     line = f"{known} of {meter.determinable} known · U({worth.length_mm:.0f} mm) {_length(2.0 * worth.u_mm)}"
+    if meter.fresh is not None:
+        return (
+            f"{line} · fresh place {min(meter.fresh.done + 1, meter.fresh.places)} of {meter.fresh.places}, not fitted"
+        )
     if meter.goal_u_mm is None:
         return line
     goal = _length(2.0 * meter.goal_u_mm)
@@ -58,7 +64,8 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     """A touch that was taken, and what is odd about it."""
     touch = happened.touch
     feature = f", {for_people(names[touch.feature])}" if touch.feature < len(names) else ""
-    said = f"Touch {touch.number}{feature} in place {touch.standing}: spread {_length(touch.spread_mm)}"
+    fresh = "fresh " if touch.held_out else ""
+    said = f"Touch {touch.number}{feature} in {fresh}place {touch.standing}: spread {_length(touch.spread_mm)}"
     if happened.scatter_mm is not None:
         said += f", scatter in its seat {_length(happened.scatter_mm)}"
     lines = [said + "."]
@@ -70,7 +77,14 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     return lines
 
 
-def screen(session: Session, meter: Meter | None, said: list[str]) -> RenderableType:
+def held_out_lines(places: int) -> list[str]:
+    """What begins."""
+    if not places:
+        return ["Touches are fitted again: put it in another place."]
+    return [f"Now {places} fresh places, not fitted, to judge by: where nothing was touched yet."]
+
+
+def screen(session: Session, meter: Meter | None, lacking: list[str], said: list[str]) -> RenderableType:
     """80 columns, always as many lines."""
     tip_mm, place = session.tip_mm, Text("nothing has come yet")
     if tip_mm is not None:
@@ -86,9 +100,12 @@ def screen(session: Session, meter: Meter | None, said: list[str]) -> Renderable
             Text(meter_line(meter), style="bold"),
             *(Text(line) for line in lines),
             *([Text("")] * (2 - len(lines))),
+            Text(""),
+            *(Text(line, style="yellow") for line in lacking),
+            *([Text("")] * (LINES - len(lacking))),
         ]
     rows += [Text(""), *(Text(line) for line in said)]
-    rows += [Text(""), Text("space touch · n moved · w withdraw · t angles right · q end", style="dim")]
+    rows += [Text(""), Text(_KEYS, style="dim")]
     return Group(*rows)
 
 
@@ -115,9 +132,11 @@ def _known(meter: Meter) -> dict[str, Any]:
         "determined": so_far.determined,
         "determinable": meter.determinable,
         "not_determined": so_far.not_determined,
+        "lacking": meter.lacking.as_dict(),
         **asdict(meter.worth),
         "goal_u_mm": meter.goal_u_mm,
         "touches_more": meter.touches_more,
+        "held_out": None if meter.fresh is None else asdict(meter.fresh),
         "next": {
             "feature": suggestion.name,
             "here": suggestion.here,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import RenderableType
 from rich.text import Text
 
@@ -18,6 +20,8 @@ _SOURCES = {
     "temperature": "the temperature",
 }
 
+_BESIDE = 4
+"""Values side by side in 80 columns."""
 _FROM = {
     "covariance": "drawn from the covariance",
     "recalibrations": "of whole calibrations redrawn",
@@ -37,13 +41,8 @@ def uncertainty_report(found: Assessment) -> list[RenderableType]:
     simulated = [(value, value.monte_carlo) for value in known if value.monte_carlo is not None]
     if simulated:
         parts += ["", _simulated(simulated, found, unit)]
-    if known:
-        sources = list(known[0].budget)
-        budget = [
-            (_SOURCES.get(source, source), *(uncertainty(value.budget[source]) for value in known))
-            for source in sources
-        ]
-        parts += ["", table(f"Who contributes: u{unit}", ("", *(_name(value, unit) for value in known)), budget)]
+    for first in range(0, len(known), _BESIDE):
+        parts += ["", _budget(known[first : first + _BESIDE], unit)]
     if found.region is not None:
         axes = " × ".join(uncertainty(half) for half in found.region.half_lengths)
         parts += ["", Text(f"With p = {percent} the point lies in an ellipsoid of half axes {axes} mm (JCGM 102).")]
@@ -56,6 +55,14 @@ def uncertainty_report(found: Assessment) -> list[RenderableType]:
         parts += ["", heading("Not determined"), listed((not_determined(value),) for value in lost)]
     parts += ["", heading("Left out"), listed((text,) for text in found.left_out)]
     return parts
+
+
+def _budget(values: Sequence[Value], unit: str) -> RenderableType:
+    rows = [
+        (_SOURCES.get(source, source), *(uncertainty(value.budget[source]) for value in values))
+        for source in values[0].budget
+    ]
+    return table(f"Who contributes: u{unit}", ("", *(_name(value, unit) for value in values)), rows)
 
 
 def _name(value: Value, unit: str) -> str:

@@ -85,7 +85,7 @@ class Commissioning:
                 f"{hello.device}: {len(names)} channels ({', '.join(names)}) for {joints} joints; expected one "
                 "for each at least. Say how many joints there are with --joints."
             )
-        counts = table.counts_per_turn
+        counts = table.counts_per_turn or hello.counts_of(names)
         stated = None if counts is None else np.broadcast_to(np.asarray(counts, dtype=float), (len(names),)).copy()
         self.known = Known(names, table.unit or hello.unit, stated)
         self.joints = joints

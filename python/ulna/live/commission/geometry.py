@@ -1,6 +1,6 @@
 """The geometry to begin with, which no turning of joints tells: a drawing's, or a guess from how far the arm reaches.
 
-With it comes in which direction each joint counts as positive.
+A device may tell it too. With it comes in which direction each joint counts as positive.
 """
 
 from __future__ import annotations
@@ -8,6 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError
+from ulna.live.registry import device_arm
+from ulna.live.source_file import read_source
 from ulna.proposals.answers import Answers
 from ulna.proposals.arms import Drawn, by_reach, drawn_arm
 
@@ -15,12 +17,17 @@ REACH_MM = 1000.0
 """Of an arm of which nobody has said it: a length to be replaced."""
 
 
-def geometry(arm: Path | None, joints: int | None, reach_mm: float | None) -> Drawn:
-    """An arm file, a result or a URDF, else as `ulna new` draws an arm.
+def geometry(arm: Path | None, joints: int | None, reach_mm: float | None, source: str | None = None) -> Drawn:
+    """An arm file, a result or a URDF, else what the source's device tells of itself, else as `ulna new` draws an arm.
 
     Raises UlnaInputError where neither says how many joints there are, or both do and differ.
     """
     if arm is None:
+        told = None if source is None or reach_mm is not None else device_arm(read_source(source))
+        if told is not None:
+            if joints not in (None, told.arm.n):
+                raise UlnaInputError(f"--joints: got {joints}, but {source} has {told.arm.n}. Leave it out.")
+            return told
         if joints is None:
             raise UlnaInputError("--joints is missing; expected how many joints the arm has. Give it, or --arm.")
         return by_reach(joints, REACH_MM if reach_mm is None else reach_mm, ["none"], "arm")

@@ -78,7 +78,11 @@ class CsvBlocks:
         channels = self._fields.channels or ()
         self._host = channels.index(HOST) if HOST in channels else None
         self._kept = [k for k, name in enumerate(channels) if k != self._host]
-        if not any(cells) or not 0 < len(self._kept) <= MOST_CHANNELS:
+        if not any(cells):
+            raise UlnaInputError(
+                f"{path}: line 1 is empty; expected a line of names or of numbers first. Record it again."
+            )
+        if not 0 < len(self._kept) <= MOST_CHANNELS:
             raise UlnaInputError(
                 f"{path}: line 1: {len(self._kept)} channels; expected 1 to {MOST_CHANNELS}, with a line of names or "
                 "of numbers first. Name those that are read in [decode] names."

@@ -8,6 +8,7 @@ from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
 from ulna.live.sources.wire import WireSource
 from ulna.live.tables import FieldsTable
+from ulna.live.url import Url
 
 KNOWN = ("baud", "parity", "stop", "wait")
 BAUD = 115200
@@ -18,13 +19,15 @@ class SerialWire:
 
     messages = False
 
-    def __init__(self, path: str, baud: int, parity: str = "none", stop: float = 1) -> None:
-        """Raises UlnaInputError where it cannot be opened."""
+    def __init__(self, path: str, baud: int, parity: str = "none", stop: float = 1, timeout_s: float = 0.1) -> None:
+        """timeout_s: how long the first byte is waited for. Raises UlnaInputError where it cannot be opened."""
         import serial
 
         self.device = path
         try:
-            self._port = serial.Serial(path, baud, timeout=0.1, parity=parity[0].upper(), stopbits=stop)
+            self._port = serial.Serial(
+                path, baud, timeout=timeout_s, write_timeout=1.0, parity=parity[0].upper(), stopbits=stop
+            )
         except (OSError, ValueError, serial.SerialException) as error:
             raise UlnaInputError(
                 f"serial:{path}: cannot be opened ({_said(error)}); expected a serial port. See which there are with: "
@@ -36,8 +39,18 @@ class SerialWire:
         try:
             found = self._port.read(self._port.in_waiting or 1)
         except (OSError, TypeError) as error:  # pyserial reads of None when it was closed meanwhile
-            raise SourceEnded(f"{self.device}: the cable was pulled, or the device is off ({_said(error)}).") from None
+            raise self._gone(error) from None
         return [found] if found else []
+
+    def send(self, data: bytes) -> None:
+        """To the device. Raises SourceEnded where it is gone."""
+        try:
+            self._port.write(data)
+        except (OSError, TypeError) as error:
+            raise self._gone(error) from None
+
+    def _gone(self, error: Exception) -> SourceEnded:
+        return SourceEnded(f"{self.device}: the cable was pulled, or the device is off ({_said(error)}).")
 
     def close(self) -> None:
         """As `Wire`."""
@@ -51,14 +64,22 @@ def _said(error: Exception) -> str:
     return os.strerror(number) if isinstance(number, int) else str(error)
 
 
+def port_of(url: Url) -> str:
+    """The port that a url names. Raises UlnaInputError."""
+    path = f"//{url.host}{url.path}" if url.host else url.path
+    if not path:
+        raise UlnaInputError(
+            f"source '{url.text}': expected {url.scheme}:PORT, such as {url.scheme}:/dev/ttyACM0. Correct it."
+        )
+    return path
+
+
 def wire(stated: StatedSource) -> SerialWire:
     """The port of a source."""
     url = stated.url
     url.check(KNOWN)
     baud = int(url.number("baud", BAUD, 50, 20_000_000))
-    path = f"//{url.host}{url.path}" if url.host else url.path
-    if not path:
-        raise UlnaInputError(f"source '{url.text}': expected serial:PORT, such as serial:/dev/ttyACM0. Correct it.")
+    path = port_of(url)
     return SerialWire(path, baud, url.word("parity", "none", ("none", "even", "odd")), url.number("stop", 1, 1, 2))
 
 

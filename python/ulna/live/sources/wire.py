@@ -39,9 +39,18 @@ class WireSource:
     """A source made of a wire and a decoder."""
 
     def __init__(
-        self, wire: Wire, decoder: Decoder, unit: str | None, wait_s: float, rate_hz: float | None = None
+        self,
+        wire: Wire,
+        decoder: Decoder,
+        unit: str | None,
+        wait_s: float,
+        rate_hz: float | None = None,
+        counts_per_turn: tuple[float, ...] | None = None,
     ) -> None:
-        """Waits for the first reading where the decoder does not know its channels. Raises UlnaInputError."""
+        """counts_per_turn: of each channel, where the device tells it.
+
+        Waits for the first reading where the decoder does not know its channels. Raises UlnaInputError.
+        """
         self._wire, self._decoder = wire, decoder
         self._pieces: deque[tuple[float, bytes]] = deque()
         self._came = threading.Event()
@@ -53,7 +62,7 @@ class WireSource:
         self._thread = threading.Thread(target=self._hear, daemon=True, name=f"hears {wire.device}")
         self._thread.start()
         try:
-            self.hello = Hello(self._channels(wait_s), unit, wire.device, rate_hz)
+            self.hello = Hello(self._channels(wait_s), unit, wire.device, rate_hz, counts_per_turn)
         except BaseException:
             self.close()
             raise

@@ -1,0 +1,78 @@
+"""What touches do not tell yet, and what they never will, in a few lines of a screen."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+
+from ulna.arm.directions import sentence, steps, worth_naming
+from ulna.live.lacking import Direction, Lacking
+
+LINES = 6
+"""On a screen that must not jump."""
+NAMED = 2
+"""Parameters that are named of those that take part."""
+WORDS = {"theta0": "zero", "alpha": "twist", "a": "length", "d": "offset", "beta": "tilt"}
+"""Of joints: as docs/concepts/model.md calls them."""
+
+
+def lacking_lines(found: Lacking, columns: int = 80, most: int = LINES) -> list[str]:
+    """The most important, whole sentences, at most so many lines; how many there are more."""
+    said = list(_sentences(found))
+    lines: list[str] = []
+    for number, text in enumerate(said):
+        own = textwrap.wrap(text, columns, subsequent_indent="  ", break_on_hyphens=False)
+        last = number + 1 == len(said)
+        if len(lines) + len(own) + (not last) > most:
+            # never silent: that there is more is said where it does not fit
+            rest = len(said) - number
+            return [*lines, f"… and {rest} more {'cause' if rest == 1 else 'causes'}: --json has all."]
+        lines += own
+    return lines
+
+
+def names(directions: Sequence[Direction]) -> str:
+    """Those parameters that take the largest steps, "zero of joint 6 with x of probe bent and 3 more"."""
+    largest: dict[str, float] = {}
+    for direction in directions:
+        weights: Mapping[str, float] = direction["combination"]
+        sizes = steps(worth_naming(weights))
+        whole = max(sizes.values())
+        for name, size in sizes.items():
+            # of each direction what it moves most counts alike
+            largest[name] = max(largest.get(name, 0.0), size / whole)
+    ordered = sorted(largest, key=lambda name: -largest[name])
+    more = len(ordered) - NAMED
+    named = " with ".join(map(in_words, ordered[:NAMED]))
+    return named + (f" and {more} more" if more > 0 else "")
+
+
+def in_words(parameter: str) -> str:
+    """ "zero of joint 6"; what has no word keeps its name."""
+    what, _, rest = parameter.partition(".")
+    of, _, key = rest.rpartition(".")
+    if what == "joint" and key in WORDS:
+        return f"{WORDS[key]} of joint {of}"
+    return f"{key} of probe {of}" if what == "probe" else parameter
+
+
+def _sentences(found: Lacking) -> Iterator[str]:
+    """What no length depends on is left out: nobody must do anything about it."""
+    lost_for_good = [each for each in found.never if not each["frame"]]
+    for head, directions in (
+        ("Never by touching this", lost_for_good),
+        ("Not known yet", found.not_yet),
+        ("Hardly known", found.weak),
+    ):
+        for because, remedy, own in _together(directions):
+            count = f" ({len(own)} combinations)" if len(own) > 1 else ""
+            yield f"{head}{count}: {names(own)}: {because}. {sentence(remedy[:1].upper() + remedy[1:])}"
+
+
+def _together(directions: Sequence[Direction]) -> Iterator[tuple[str, str, list[Direction]]]:
+    """Those with the same cause and remedy, once."""
+    groups: dict[tuple[str, str], list[Direction]] = {}
+    for direction in directions:
+        groups.setdefault((str(direction["because"]).rstrip("."), str(direction["remedy"])), []).append(direction)
+    for (because, remedy), own in groups.items():
+        yield because, remedy, own
