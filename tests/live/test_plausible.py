@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
@@ -175,3 +177,29 @@ def test_channels_are_chosen_and_ordered_by_name() -> None:
         Mapping(MapTable(channels=["d"], unit="rad"), HELLO)
     with pytest.raises(UlnaInputError, match=r"map\.unit.* is missing"):
         Mapping(MapTable(), HELLO)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.3, 6.2), st.floats(-6.0, 6.0), st.sampled_from(["counts", "deg"]))
+def test_limits_tell_the_turn_in_which_a_stream_begins(seed: int, span: float, low: float, unit: str) -> None:
+    """Wherever in its travel of less than a turn each joint is as the stream begins, and wherever its encoder begins
+    again, the angles are those between its limits; where no limit is known they are as sent."""
+    rng = np.random.default_rng(seed)
+    travel = np.array([[low, low + span], [np.nan, np.nan], [low, low + span]])
+    wander = np.cumsum(rng.normal(0.0, 0.01, (300, 3)), axis=0) + rng.uniform(0.0, 1.0, 3)
+    truth = low + span * np.clip(wander, 0.0, 1.0)
+    turn = 4096.0 if unit == "counts" else 360.0
+    raw = np.remainder(truth / (2 * np.pi) * turn, turn)
+    table = MapTable(unit="counts", counts_per_turn=turn) if unit == "counts" else MapTable(unit="deg")
+    mapping = Mapping(table, HELLO)
+    mapping.begin_within(travel)
+    found = mapping.q_rad(Samples(np.arange(300) / 100, None, raw))
+    np.testing.assert_allclose(found[:, [0, 2]], truth[:, [0, 2]], atol=1e-9)
+    assert found[0, 1] == pytest.approx(raw[0, 1] / turn * 2 * np.pi)
+
+
+def test_a_joint_of_several_turns_that_is_within_its_limits_stays_there() -> None:
+    mapping = Mapping(MapTable(unit="rad"), HELLO)
+    mapping.begin_within(np.array([[-20.0, 20.0], [-1.0, 1.0], [5.0, 5.5]]))
+    sent = np.array([[12.0, 2.0, 0.1]])  # within; outside, and in no turn inside; the same
+    np.testing.assert_array_equal(mapping.q_rad(Samples(np.zeros(1), None, sent)), sent)

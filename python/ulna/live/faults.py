@@ -29,6 +29,8 @@ KINDS = {
 """Kind → what it is."""
 DOUBTFUL = frozenset({RESET, SWAP, JUMP})
 """After these nothing says that the angles are still right: a stream is doubtful until somebody says so."""
+ORDINARY = frozenset({WRAP})
+"""What encoders do by their nature: kept and counted, and not said to somebody who has an arm in the hand."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ from ulna.live.tables import MapTable
 
 TURN = {"deg": 360.0, "rad": 2 * math.pi}
 """Unit → a turn in it; of counts it is their number."""
+AT_STOP_RAD = math.radians(2.0)
+"""A joint at its stop may read so much beyond it."""
 
 
 class Mapping:
@@ -65,9 +67,30 @@ class Mapping:
         self.turn: F64 = np.broadcast_to(np.asarray(turn, dtype=float), (len(names),)).copy()
         """(n,) a turn, in the unit of the channels."""
         self.wraps = table.wraps
+        self._travel_rad: F64 | None = None
         self._last: F64 | None = None
         self._turns = np.zeros(len(names))
         self._faults: list[Fault] = []
+
+    def begin_within(self, travel_rad: F64 | None) -> None:
+        """(n, 2) how far the joints turn, NaN where nobody says it: a stream that begins a turn or more outside begins
+        inside, where there is such a turn. An encoder that begins again within a joint's travel cannot say it itself.
+        """
+        self._travel_rad = travel_rad
+
+    def _first_turns(self, raw: F64) -> F64:
+        """(n,) whole turns to begin with at (n,) readings."""
+        none = np.zeros(len(self.columns))
+        if self._travel_rad is None or not self.wraps:
+            return none
+        low, high = self._travel_rad.T
+        sent = raw * (2 * math.pi / self.turn)
+        turns = np.round(((low + high) / 2 - sent) / (2 * math.pi))
+        outside = (sent < low - AT_STOP_RAD) | (sent > high + AT_STOP_RAD)
+        moved = sent + 2 * math.pi * turns
+        inside = (moved >= low - AT_STOP_RAD) & (moved <= high + AT_STOP_RAD)
+        found: F64 = np.where(outside & inside, turns, none)
+        return found
 
     def q_rad(self, samples: Samples, anew: tuple[int, ...] = ()) -> F64:
         """(N, n) encoder angles; anew: rows from which turns are counted from none (the device was reset). (N, 0) where
@@ -84,7 +107,9 @@ class Mapping:
         return q
 
     def _run(self, raw: F64, t_host_s: F64) -> F64:
-        turns = np.zeros_like(raw)
+        if self._last is None:
+            self._turns = self._first_turns(raw[0])
+        turns = np.broadcast_to(self._turns, raw.shape)
         if self.wraps:
             before = np.vstack([raw[:1] if self._last is None else self._last, raw[:-1]])
             turns = -np.round((raw - before) / self.turn)

@@ -49,6 +49,8 @@ class Told:
     feature: int
     moved: bool
     """Whether the artefact stands elsewhere than at the touch before."""
+    apart_mm: float = 0.0
+    """Of a moved one: how far the tip is from where the feature was."""
 
 
 def tell(fit: RunningFit, artefact: Artefact, own: Sequence[Touch], tip: Tip, expected: Expected | None) -> Told:
@@ -73,7 +75,7 @@ def tell(fit: RunningFit, artefact: Artefact, own: Sequence[Touch], tip: Tip, ex
     best = int(off_mm.argmin())
     if near[best] or not kind_of(artefact).placed(artefact):
         return Told(best, False)
-    return Told(first, True)
+    return Told(first, True, float(off_mm[first]))
 
 
 def _off(arm: Arm, artefact: Artefact, own: Sequence[Touch], tip: Tip) -> F64:

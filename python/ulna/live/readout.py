@@ -85,6 +85,7 @@ class ReadOut:
             raise UlnaInputError(f"arm '{arm.arm.name}': {UNSURE}.")
         self._by_itself = by_itself
         stops, seat_mm = travel_of(arm.arm), math.sqrt(arm.noise.variance_mm2)
+        stream.mapping.begin_within(stops)
         self._rests = Rests(stream, arm.tips_mm, self._covariance_mm2, seat_mm, stops, by_itself)
         self._newest: tuple[float, F64] | None = None
         self._tip_s = -math.inf

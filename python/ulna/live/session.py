@@ -67,11 +67,16 @@ class Happened:
     moved: bool
     """Whether the artefact was taken for moved."""
     scatter_mm: float | None
-    """Standard deviation of the touches of this feature in this place about their mean; None for one alone."""
+    """Standard deviation of the touches of this feature in this place about their mean; None for one alone, and as long
+    as the arm follows whatever is touched."""
     off_mm: float | None
     """What the fit leaves of it; None before there is a fit."""
     times: float | None
     """The same in units of the scatter of all."""
+    apart_mm: float = 0.0
+    """Of a moved artefact: how far the tip is from where it was, by the arm as it was known."""
+    against: int = 0
+    """How often in a row it was taken for moved though it was to stay."""
 
 
 Event = Fault | Refused | Happened
@@ -124,9 +129,11 @@ class Session:
         self._never = never(self.fit, self.guide)
         self.place = 0
         """Number of the place where the artefact stands; 0 before the first touch."""
+        self._against = 0
         self._probe = arm.probe_index(spec.probe)
         self._suggestion: Suggestion | None = None
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
+        stream.mapping.begin_within(travel_of(arm))
         self._rests = Rests(stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself)
         self.fresh_places = 0
         """Fresh places that are asked for: touches are held out; 0: they are fitted."""
@@ -287,15 +294,17 @@ class Session:
             return Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
         if self.fresh_places and self._stands_still(found, told):
             return Refused("it stands where it was touched before: put it in a fresh place, to judge by")
+        if expected is None or expected.here:
+            self._against = self._against + 1 if told.moved else 0
         self.place = self.place + 1 if told.moved else max(self.place, 1)
         touch = self._touch(found, told.feature)
         self._keep(touch)
         self.fit.add(touch)
         if touch.held_out:
-            return Happened(touch, told.moved, self._scatter(touch), None, None)
+            return Happened(touch, told.moved, self._scatter(touch), None, None, told.apart_mm)
         self._refit()
         off_mm, times = self._off(touch)
-        return Happened(touch, told.moved, self._scatter(touch), off_mm, times)
+        return Happened(touch, told.moved, self._scatter(touch), off_mm, times, told.apart_mm, self._against)
 
     def _touch(self, found: Taken, feature: int) -> Touch:
         return Touch(
@@ -353,7 +362,7 @@ class Session:
 
     def _scatter(self, touch: Touch) -> float | None:
         own = [each for each in self._own() if each.feature == touch.feature]
-        if len(own) < 2 or kind_of(self.spec.artefact).scattered:
+        if len(own) < 2 or self.fit.fitted is None or kind_of(self.spec.artefact).scattered:
             return None
         at_mm = tips(self.arm_now, own)
         return float(np.sqrt(((at_mm - at_mm.mean(axis=0)) ** 2).sum() / (len(own) - 1) / 3.0))

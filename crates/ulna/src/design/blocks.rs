@@ -46,21 +46,27 @@ pub(super) fn product_transposed(a: &[f64], b: &[f64], width: usize) -> Vec<f64>
 /// The lower Cholesky factor of a small matrix; none where it is not positive definite.
 pub(super) fn cholesky(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut l = matrix.to_vec();
+    cholesky_in_place(&mut l, n).then_some(l)
+}
+
+/// The same in place, of which only the lower triangle is read; whether it is positive definite.
+pub(super) fn cholesky_in_place(l: &mut [f64], n: usize) -> bool {
     for j in 0..n {
         for i in j..n {
             let dot: f64 = (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum();
-            let value = matrix[i * n + j] - dot;
+            let given = l[i * n + j];
+            let value = given - dot;
             if i > j {
                 l[i * n + j] = value / l[j * n + j];
-            } else if value > LEAST_PIVOT * matrix[j * n + j].abs() {
+            } else if value > LEAST_PIVOT * given.abs() {
                 l[j * n + j] = value.sqrt();
             } else {
-                return None;
+                return false;
             }
         }
         l[j * n + j + 1..(j + 1) * n].fill(0.0);
     }
-    Some(l)
+    true
 }
 
 /// A pivot below this part of the diagonal is rounding: the information has no inverse.

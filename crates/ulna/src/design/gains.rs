@@ -1,6 +1,6 @@
 //! What one more measurement would be worth, of very many at once.
 
-use super::blocks::{Candidates, dot, quotient_trace};
+use super::blocks::{Candidates, cholesky_in_place, dot, solve_lower};
 use crate::error::{Error, Result};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
@@ -14,7 +14,8 @@ const TOGETHER: usize = 256;
 ///
 /// `tr((I + W Wᵀ)⁻¹ W HᵀH Wᵀ) / rows of F`, where `W = Z R⁻¹` and `H = F R⁻¹`.
 ///
-/// Only the triangle is ever solved with, the information is never formed. `triangle` is row-major and upper.
+/// Only the triangle is ever solved with, the information is never formed; nor is `HᵀH`, in whose place its triangle `T`
+/// stands: with `L Lᵀ = I + W Wᵀ` a gain is the sum of the squares of `L⁻¹ W Tᵀ`. `triangle` is row-major and upper.
 ///
 /// # Errors
 /// Shapes that do not agree, numbers that are not finite, a triangle that has a zero on its diagonal.
@@ -24,49 +25,54 @@ pub fn gains(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> R
     let inverse = inverse_upper(triangle, n);
     let asked = directions.len() / n;
     let of_asked = product(MatRef::from_row_major_slice(directions, asked, n), inverse.as_ref());
-    // HᵀH, symmetric and small
-    let weight = product(of_asked.transpose(), of_asked.as_ref());
-    let size = each * n;
+    let least = of_asked.qr().thin_R().to_owned();
+    // both products at once: R⁻ᵀ, and T R⁻ᵀ below it
+    let height = n + least.nrows();
+    let below = product(least.as_ref(), inverse.transpose());
+    let both = Mat::from_fn(height, n, |i, j| if i < n { inverse[(j, i)] } else { below[(i - n, j)] });
     let mut gains = vec![0.0; candidates.count()];
-    let together = candidates.rows.par_chunks(TOGETHER * size).zip(gains.par_chunks_mut(TOGETHER));
-    together.for_each(|(rows, gains)| {
-        // a row of a candidate is a column here, so that its numbers stand together
-        let count = rows.len() / n;
-        let seen = product(inverse.transpose(), MatRef::from_column_major_slice(rows, n, count));
-        let told = product(weight.as_ref(), seen.as_ref());
-        let mut work = vec![0.0; 2 * each * each];
-        let (inner, outer) = work.split_at_mut(each * each);
-        let mut here = Here { seen: &seen, told: &told, inner, outer };
-        gains.iter_mut().enumerate().for_each(|(k, gain)| *gain = here.gain(k * each, each) / asked as f64);
-    });
-    Ok(gains)
+    let together = candidates.rows.par_chunks(TOGETHER * each * n).zip(gains.par_chunks_mut(TOGETHER));
+    let finite = together
+        .map(|(rows, gains)| {
+            // a row of a candidate is a column here, so that its numbers stand together
+            let found = product(both.as_ref(), MatRef::from_column_major_slice(rows, n, rows.len() / n));
+            let mut here = Here { found: &found, n, inner: vec![0.0; each * each], told: vec![0.0; each * (height - n)] };
+            gains.iter_mut().enumerate().for_each(|(k, gain)| *gain = here.gain(k * each, each) / asked as f64);
+            rows.iter().all(|value| value.is_finite())
+        })
+        .reduce(|| true, |a, b| a & b);
+    if finite { Ok(gains) } else { Err(not_finite(candidates.rows)) }
 }
 
-/// The products of some candidates.
+/// The products of some candidates, and room to work in.
 struct Here<'a> {
-    /// `Wᵀ`
-    seen: &'a Mat<f64>,
-    /// `HᵀH Wᵀ`
-    told: &'a Mat<f64>,
-    inner: &'a mut [f64],
-    outer: &'a mut [f64],
+    /// A column for each row of a candidate: of `Wᵀ`, and of `T Wᵀ` below it.
+    found: &'a Mat<f64>,
+    n: usize,
+    /// `I + W Wᵀ`, then its factor.
+    inner: Vec<f64>,
+    /// `W Tᵀ`, then `L⁻¹ W Tᵀ`.
+    told: Vec<f64>,
 }
 
 impl Here<'_> {
-    /// `tr((I + W Wᵀ)⁻¹ W HᵀH Wᵀ)` of the candidate whose rows begin at `first`.
+    /// The gain, times the rows of F, of the candidate whose rows begin at `first`.
     fn gain(&mut self, first: usize, each: usize) -> f64 {
+        let width = self.told.len() / each;
         for i in 0..each {
-            let (seen, told) = (self.seen.col_as_slice(first + i), self.told.col_as_slice(first + i));
+            let (seen, told) = self.found.col_as_slice(first + i).split_at(self.n);
+            self.told[i * width..(i + 1) * width].copy_from_slice(told);
             for j in 0..=i {
-                let other = self.seen.col_as_slice(first + j);
-                let inner = dot(seen, other) + if i == j { 1.0 } else { 0.0 };
-                let outer = dot(told, other);
-                (self.inner[i * each + j], self.inner[j * each + i]) = (inner, inner);
-                (self.outer[i * each + j], self.outer[j * each + i]) = (outer, outer);
+                let other = &self.found.col_as_slice(first + j)[..self.n];
+                self.inner[i * each + j] = dot(seen, other) + if i == j { 1.0 } else { 0.0 };
             }
         }
         // I + W Wᵀ is positive definite whatever W is
-        quotient_trace(self.inner, self.outer, each).unwrap_or(0.0)
+        if !cholesky_in_place(&mut self.inner, each) {
+            return 0.0;
+        }
+        solve_lower(&self.inner, each, &mut self.told, width);
+        dot(&self.told, &self.told)
     }
 }
 
@@ -103,9 +109,8 @@ fn check(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Resul
     if let Some(&(what, got, expected)) = shapes.iter().find(|(_, got, expected)| got != expected) {
         return Err(Error::Shape { what: what.into(), got, expected });
     }
-    let numbers = candidates.rows.iter().chain(triangle).chain(directions);
-    if let Some(&value) = numbers.clone().find(|value| !value.is_finite()) {
-        return Err(Error::NotFinite { what: "a number of the candidates or of what is known".into(), value });
+    if triangle.iter().chain(directions).any(|value| !value.is_finite()) {
+        return Err(not_finite(&[triangle, directions].concat()));
     }
     if (0..n).any(|k| triangle[k * n + k] == 0.0) {
         return Err(Error::OutOfRange {
@@ -115,6 +120,12 @@ fn check(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> Resul
         });
     }
     Ok(())
+}
+
+/// Some number is not; which.
+fn not_finite(numbers: &[f64]) -> Error {
+    let value = numbers.iter().copied().find(|value| !value.is_finite()).unwrap_or(f64::NAN);
+    Error::NotFinite { what: "a number of the candidates or of what is known".into(), value }
 }
 
 #[cfg(test)]
@@ -171,5 +182,7 @@ mod tests {
         assert!(gains(&candidates, &triangle, &[]).is_err());
         assert!(gains(&candidates, &[1.0, 0.5, 0.0, 0.0], &[1.0, 0.0]).is_err());
         assert!(gains(&candidates, &triangle, &[f64::NAN, 0.0]).is_err());
+        let broken: Vec<f64> = rows.iter().enumerate().map(|(k, &v)| if k == 7 { f64::INFINITY } else { v }).collect();
+        assert!(gains(&Candidates { rows: &broken, ..candidates }, &triangle, &[1.0, 0.0]).is_err());
     }
 }

@@ -17,7 +17,7 @@ from ulna.cli.live.watching import read_on
 from ulna.cli.printed.lacking import lacking_lines
 from ulna.cli.printed.touching import happened_lines, held_out_lines, meter_lines, record_of, screen
 from ulna.ground.errors import UlnaInputError
-from ulna.live.faults import Fault
+from ulna.live.faults import ORDINARY, Fault
 from ulna.live.fresh import USUAL
 from ulna.live.session import Event, Happened, Meter, Session
 from ulna.live.stream import Frames
@@ -118,7 +118,8 @@ class Bench:
             print(json.dumps(record_of(event), ensure_ascii=False, allow_nan=False), flush=True)
         match event:
             case Fault():
-                self._tell([f"{event.kind}: {event.text}"], told=self.as_json)
+                if event.kind not in ORDINARY:
+                    self._tell([f"{event.kind}: {event.text}"], told=self.as_json)
             case Refused():
                 _tone(False, self.as_json)
                 self._tell([f"Not taken: {event.reason}."], told=self.as_json)

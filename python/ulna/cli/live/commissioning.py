@@ -87,7 +87,8 @@ def commissioned(asked: Asked, as_json: bool) -> None:
         print(noise_text(findings))
     output.say(f"Written: {', '.join(str(asked.out / each) for each in FILES)}")
     arm, plan, source = (asked.out / name for name in ("arm.toml", "plan.toml", "source.toml"))
-    output.say(f"Next: put the length of your bar into {plan}, then ulna live touch {arm} {plan} {source} -o touched")
+    output.say(f"Next: put the length of your bar into {plan}, then")
+    output.say(f"ulna live touch {arm} {plan} {source} -o touched")
 
 
 def _posture(drawn: Drawn, asked: Asked) -> Posture | None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ulna.cli.live.rounds import Round
 from ulna.cli.live.watching import FRAMES_HZ, LINES_HZ, go_round
+from ulna.live.faults import ORDINARY
 from ulna.live.features import Feature, Notebook
 from ulna.live.figures import Calibrated
 from ulna.live.readout import ReadOut, Set, Tip
@@ -158,7 +159,8 @@ def _in_lines(reading: Reading, source: str, seconds: float | None) -> Round:
     def each(known: Round, frames: Frames) -> None:
         out = reading.of(known)
         for fault in frames.told:
-            say(f"{fault.kind}: {fault.text}")
+            if fault.kind not in ORDINARY:
+                say(f"{fault.kind}: {fault.text}")
         for said in out.take(frames):
             if isinstance(said, Refused):
                 print(f"not taken: {said.reason}", flush=True)

@@ -29,11 +29,14 @@ def _figures(found: HeldOut) -> Iterator[str]:
         said = [f"{WORDS[figure]} {figure_mm(overall[name])} mm" for figure, name in names.items() if name in overall]
         if not said:
             continue
-        line = f"  {quantity.label}: {', '.join(said)}"
+        yield f"  {quantity.label}: {', '.join(said)}"
+        beside, first = [], next(iter(names.values()))
         if quantity.name == EXPECTED and found.expected_mm is not None:
-            line += f"; expected from what is known rms {figure_mm(found.expected_mm)} mm"
-        first = next(iter(names.values()))
-        yield line + (f"; before {figure_mm(before[first])} mm" if first in before else "")
+            beside.append(f"expected from what is known: rms {figure_mm(found.expected_mm)} mm")
+        if first in before:
+            beside.append(f"before: {figure_mm(before[first])} mm")
+        if beside:
+            yield f"    {'; '.join(beside)}"
 
 
 def _inside(found: HeldOut) -> Iterator[str]:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from ulna.live.session import Session
 
 _BAR = 10
+AGAIN = 2
+"""So often in a row an artefact is not moved by whoever was asked to leave it."""
+BEGIN_AGAIN = "raise plan.known_angle (0.09 rad where zeros are by eye), and begin again."
 _KEYS = "space touch · n moved · w withdraw · h hold out · t angles right · q end"
 
 
@@ -51,7 +54,8 @@ def next_lines(meter: Meter) -> list[str]:
         return [f"Next, where it stands: {how}"]
     x, y, z = suggestion.stand.points_mm.mean(axis=0)
     stand = suggestion.stand
-    lies = "" if stand.lies == "nowhere" else f", {stand.lies}, {stand.azimuth_deg:.0f}°"
+    steep = f" {abs(stand.slope_deg):.0f}°" if stand.lies in ("rising", "falling") else ""
+    lies = "" if stand.lies == "nowhere" else f", {stand.lies}{steep}, towards {stand.azimuth_deg:.0f}°"
     return [f"Next, put it at x {x:.0f}, y {y:.0f}, z {z:.0f} mm{lies}:", f"  {how}"]
 
 
@@ -70,7 +74,9 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
         said += f", scatter in its seat {_length(happened.scatter_mm)}"
     lines = [said + "."]
     if happened.moved:
-        lines.append("It is far from where it was: taken as moved, a new place.")
+        lines.append(f"It is {happened.apart_mm:.0f} mm from where it was: taken as moved, a new place.")
+        if happened.against >= AGAIN:
+            lines += ["If it stands still, the arm is known less well than the plan says: end (q),", BEGIN_AGAIN]
     if happened.off_mm is not None and happened.times is not None and happened.times > SUSPICIOUS:
         lines.append(f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated?")
         lines.append("Repeat it, and withdraw this one (w), or keep it.")
@@ -118,7 +124,7 @@ def record_of(event: Event | Meter) -> dict[str, Any]:
             return {"refused": event.reason}
         case Happened():
             judged = {"scatter_mm": event.scatter_mm, "off_mm": event.off_mm, "times": event.times}
-            return {"touch": as_dict(event.touch) | {"moved": event.moved} | judged}
+            return {"touch": as_dict(event.touch) | {"moved": event.moved, "apart_mm": event.apart_mm} | judged}
         case Meter():
             return {"known": _known(event)}
     raise AssertionError(event)

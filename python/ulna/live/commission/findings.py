@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ulna.ground.errors import UlnaInputError
 from ulna.live.commission.counting import Known
 from ulna.live.commission.holding import Held, Holding
@@ -151,14 +153,19 @@ class Findings:
                 "([fit] extras)."
                 for name, ratio in joint.along
             ]
-        over = [str(k) for k, joint in enumerate(self.joints, start=1) if joint.wraps and not joint.endless]
+        over = [
+            str(k)
+            for k, joint in enumerate(self.joints, start=1)
+            if joint.wraps and not joint.endless and np.ptp(self.limits_rad(k - 1)) >= 2.0 * math.pi
+        ]
         if over:
             lines.append(
-                f"The encoder begins again within the travel of joint {', '.join(over)}: let a stream begin with it "
-                "near its middle, or its angles are a turn off (the postures are the same)."
+                f"Joint {', '.join(over)} turns by more than its encoder tells apart: let a stream begin with it near "
+                "its middle, or its angles are a turn off (the postures are the same)."
             )
         unsaid = [str(k) for k, joint in enumerate(self.joints, start=1) if not joint.sign]
         if unsaid:
             lines.append(f"sign = 0 of joint {', '.join(unsaid)}: nobody could say which way; a calibration finds it.")
-        lines.append("Zero offsets (theta0) are not found here: a calibration finds them.")
+        by_eye = "Zero offsets (theta0) are by eye, to some degrees: a calibration finds the rest."
+        lines.append(by_eye if self.zeroed else "Zero offsets (theta0) are not found: a calibration searches for them.")
         return lines

@@ -1,0 +1,49 @@
+"""What `docs/evening.md` shows: the evening of examples/evening, played in real time, some five minutes.
+
+A hand and a clock are never twice the same to the last digit, so no test compares these files with what is printed
+today; `tests/examples/test_evening.py` plays the same hand without the clock.
+"""
+
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+EXAMPLE = ROOT / "examples" / "evening"
+PARTS: dict[str, tuple[str, ...]] = {
+    "guess": (),
+    "commission": (),
+    "touch": ("Touch 3,", "Fresh places touched"),
+    "measure": ("p1:", "f2 length (p3 p4)"),
+}
+"""Name → the lines between which some are left out, where there are very many."""
+
+
+def evening_outputs() -> dict[str, str]:
+    """File below docs/output → text."""
+    sys.path.insert(0, str(EXAMPLE))
+    from play import main
+
+    with tempfile.TemporaryDirectory() as folder:
+        main(Path(folder))
+        said = {name: (Path(folder) / "said" / f"{name}.txt").read_text(encoding="utf-8") for name in PARTS}
+    return {f"evening-{name}.txt": _shown(text, *PARTS[name]) for name, text in said.items()}
+
+
+def _shown(text: str, first: str = "", again: str = "") -> str:
+    """As it is on the page: the port by its usual name, no spaces at ends of lines; of many touches the first and the
+    last."""
+    text = text.replace("serial:ttyACM0", "serial:/dev/ttyACM0")
+    text = re.sub(r"(?m)^ttyACM0:", "/dev/ttyACM0:", text)
+    lines = [line.rstrip() for line in text.strip("\n").splitlines()]
+    if first:
+        begin = next(k for k, line in enumerate(lines) if line.startswith(first))
+        end = next(k for k, line in enumerate(lines) if line.startswith(again))
+        lines = [*lines[: begin + 1], "…", *lines[end:]]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    for name, text in evening_outputs().items():
+        (ROOT / "docs" / "output" / name).write_text(text, encoding="utf-8")
