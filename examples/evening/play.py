@@ -131,14 +131,14 @@ def main(folder: Path) -> None:
         arm.go(arm.middle_rad)
         line.wait()
         command = "live touch my-arm/arm.toml my-arm/plan.toml my-arm/source.toml -o touched --trigger still"
-        run(folder, "touch", f"{command} --goal 0.2 --length 300 --held-out 5", hand.touches)
+        run(folder, "touch", f"{command} --goal 0.05 --length 300 --held-out 5", hand.touches)
         arm.go(arm.middle_rad)
         line.wait()
         # a gauge of another length, in a place where nothing was touched, twice from end to end
         bar_mm = hand.put(np.array([250.0, -260.0, 220.0]), 0.4, 0.3, GAUGE_MM)
         ends = threading.Thread(target=_touch_ends, args=(arm, bar_mm), daemon=True)
         ends.start()
-        command = "live measure touched/result my-arm/source.toml --still --feature length --seconds 32 -o gauge.csv"
+        command = "live measure touched/result my-arm/source.toml --still --feature length --seconds 36 -o gauge.csv"
         run(folder, "measure", command, lambda _: None)
         ends.join()
     finally:
@@ -153,7 +153,7 @@ def fill_in(plan: Path) -> None:
 
 
 def _touch_ends(arm: HomeBuilt, bar_mm: F64) -> None:
-    time.sleep(2.0)
+    time.sleep(5.0)  # until the command listens
     for end in (0, 1, 0, 1):
         arm.go(arm.postures(bar_mm[end], 20)[0], rest_s=4.0)
 

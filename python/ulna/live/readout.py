@@ -200,14 +200,14 @@ class ReadOut:
 
 
 def _sample_noise(stream: Stream, arm: Calibrated) -> F64 | None:
-    """(n,) standard deviation of one sample's encoders: as the calibration or somebody states it, never less than what
-    whole counts leave open; None where nobody knows."""
+    """(n,) standard deviation of one sample of each encoder: as source file, calibration or somebody states it, never
+    less than what whole counts leave open; None where nobody knows."""
     mapping = stream.mapping
     counts = mapping.turn if mapping.unit == "counts" else None
     if counts is None and all(joint.counts_per_turn is not None for joint in arm.arm.joints):
         counts = np.array([joint.counts_per_turn for joint in arm.arm.joints], dtype=np.float64)
     rounding = None if counts is None else 2.0 * np.pi / counts / np.sqrt(12.0)
-    stated = arm.sample_rad
+    stated = arm.sample_rad if stream.sample_rad is None else stream.sample_rad
     if stated is None or rounding is None:
         return stated if rounding is None else rounding
     found: F64 = np.maximum(stated, rounding)

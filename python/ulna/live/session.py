@@ -133,6 +133,7 @@ class Session:
         self._probe = arm.probe_index(spec.probe)
         self._suggestion: Suggestion | None = None
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
+        self._sample_rad = spec.encoder_rad if stream.sample_rad is None else stream.sample_rad
         stream.mapping.begin_within(travel_of(arm))
         self._rests = Rests(stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself)
         self.fresh_places = 0
@@ -265,7 +266,7 @@ class Session:
 
     def _covariance_mm2(self, q_rad: F64) -> F64:
         jacobian = self.arm.core.encoder_jacobian(q_rad[None], self._probe)[0]
-        found: F64 = (jacobian * self.spec.encoder_rad**2) @ jacobian.T
+        found: F64 = (jacobian * self._sample_rad**2) @ jacobian.T
         return found
 
     def _tip_mm(self, q_rad: F64) -> F64:

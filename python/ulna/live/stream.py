@@ -7,7 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ulna.ground.arrays import F64
+from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import Fault
 from ulna.live.floods import Floods
 from ulna.live.mapping import Mapping
@@ -42,6 +45,20 @@ class Stream:
         self.mapping = Mapping(stated.file.map, source.hello, stated.path, angles)
         self.plausible = Plausible(self.mapping, stated.file.limits, source.hello.rate_hz)
         self._floods = Floods()
+        self.sample_rad = self._sample_rad()
+        """(n,) standard deviation of one sample of each encoder, where the source file says it."""
+
+    def _sample_rad(self) -> F64 | None:
+        noise, turn = self.stated.file.still.noise, self.mapping.turn
+        if noise is None:
+            return None
+        if isinstance(noise, list) and len(noise) != len(turn):
+            raise UlnaInputError(
+                f"{self.stated.path}: key 'still.noise': {len(noise)} numbers for {len(turn)} channels; expected one "
+                "for each, or one for all. Correct it."
+            )
+        found: F64 = np.broadcast_to(np.asarray(noise, dtype=np.float64), turn.shape) * (2.0 * np.pi / turn)
+        return found
 
     def read(self, timeout_s: float) -> Frames:
         """As `Source.read`. Raises SourceEnded; what was wrong at the end `ended` has."""

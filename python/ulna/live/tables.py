@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from ulna.arm.stated import PositiveEach
 from ulna.formats.models import OneOf, Strict
 from ulna.formats.numbers import Amount, Positive
 from ulna.live.samples import MOST_CHANNELS
@@ -101,6 +102,9 @@ class StillTable(Strict):
     """mm: standard deviation of the tip; from the arm's noise where it is not given."""
     drift: Positive | None = None
     """mm from the first to the last; from the arm's noise where it is not given."""
+    noise: PositiveEach | None = None
+    """Standard deviation of one sample of each encoder, held still, in `map.unit`; as the plan or the calibration has
+    that of a reading where it is not given."""
     rearm: Amount = 2.0
     """mm that the tip must have moved before it may be still anew."""
 

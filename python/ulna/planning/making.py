@@ -29,7 +29,7 @@ class Found:
     """What was found of an arm before anybody measured with it."""
 
     encoder_rad: tuple[float, ...]
-    """Standard deviation of each encoder."""
+    """Standard deviation of each encoder in a touch."""
     known_angle_rad: float | None
     """By how much angles of the arm file may be off; None: as those of a drawing."""
 
@@ -112,7 +112,9 @@ def _noise(arm: Arm, study: Study | None, found: Found | None) -> list[str]:
     if noise is not None and noise.encoder_rad is not None:
         encoder = toml_value(noise.encoder_rad.tolist()) + " # as the study has it"
     elif found is not None:
-        encoder = toml_value([float(f"{each:.3g}") for each in found.encoder_rad]) + " # rad, as found held still"
+        encoder = (
+            toml_value([float(f"{each:.3g}") for each in found.encoder_rad]) + " # rad, of a touch, as found held still"
+        )
     elif all(counts):
         # a count is rounded: uniform over its width
         steps = [float(f"{2.0 * np.pi / float(count or 1.0) / np.sqrt(12.0):.3g}") for count in counts]

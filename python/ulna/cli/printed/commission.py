@@ -76,6 +76,7 @@ def document(findings: Findings, out: Path) -> dict[str, Any]:
             "wraps": joint.wraps,
             "step_rad": None if joint.step is None else findings.rad(k, joint.step),
             "noise_rad": findings.noise_rad(k),
+            "touch_noise_rad": findings.touch_noise_rad(k),
             "drift_rad": findings.rad(k, joint.drift),
             "along": dict(joint.along),
         }

@@ -13,7 +13,11 @@ from ulna.live.commission.counting import Known
 from ulna.live.commission.holding import Held, Holding
 from ulna.live.commission.turning import Turned
 from ulna.live.mapping import TURN
+from ulna.live.still import WINDOWS_S
 
+CARRIED = 0.5
+"""Of a step: with so much noise the mean of whole steps is that of what they were rounded from, to a hundredth of a step
+(Gray and Stockham, IEEE Trans. Inf. Theory 39, 1993, 805: the ripple is of exp(-2 π² σ²))."""
 FULL_TURN = 1.0
 """From so many turns on it is asked whether a joint turns on and on."""
 
@@ -124,6 +128,15 @@ class Findings:
     def noise_rad(self, joint: int) -> float:
         """Standard deviation of an encoder."""
         return self.rad(joint, self.joints[joint].noise)
+
+    def touch_noise_rad(self, joint: int) -> float:
+        """Standard deviation of an encoder's mean over the shortest rest that is a touch. Steps that the noise does not
+        carry over to the next do not average out."""
+        found = self.joints[joint]
+        step = found.step or 0.0
+        count = max(1.0, WINDOWS_S[0] * self.holding.readings / self.holding.seconds)
+        mean = found.noise / math.sqrt(count) if found.noise >= CARRIED * step else found.noise
+        return self.rad(joint, mean)
 
     def limits_rad(self, joint: int) -> tuple[float, float]:
         """The lowest and highest angle of an encoder."""

@@ -19,6 +19,7 @@ from ulna.formats.toml_text import toml_key, toml_value
 from ulna.live.commission.findings import Findings
 from ulna.live.mapping import TURN
 from ulna.live.source_file import StatedSource, load_source
+from ulna.live.still import WINDOWS_S
 from ulna.planning.making import Found, plan_toml
 from ulna.proposals.arms import Drawn
 
@@ -69,6 +70,7 @@ def source_text(findings: Findings, stated: StatedSource, folder: Path) -> str:
         "map": mapped,
         **{name: getattr(file, name).model_dump(exclude_defaults=True) for name in ("limits", "still", "trigger")},
     }
+    tables["still"] = {**(tables["still"] or {}), "noise": [float(f"{each.noise:.3g}") for each in findings.joints]}
     for name, table in tables.items():
         if table:
             lines += ["", f"[{name}]", *(f"{toml_key(key)} = {toml_value(value)}" for key, value in table.items())]
@@ -115,18 +117,20 @@ def arm_text(findings: Findings, base: Drawn) -> str:
 
 def plan_text(findings: Findings, arm: Arm, folder: Path) -> str:
     """A plan to touch a bar by, whose length is to be filled in."""
-    noise_rad = tuple(findings.noise_rad(k) for k in range(len(findings.joints)))
+    noise_rad = tuple(findings.touch_noise_rad(k) for k in range(len(findings.joints)))
     by_eye_rad = math.radians(BY_EYE_DEG) if findings.zeroed else None
     return plan_toml(arm, None, folder, Found(noise_rad, by_eye_rad))
 
 
 def noise_text(findings: Findings) -> str:
     """[noise] to paste into a study, a plan or a simulation with units = { angle = "rad" }."""
-    noise = [float(f"{findings.noise_rad(k):.3g}") for k in range(len(findings.joints))]
-    degrees = ", ".join(f"{math.degrees(each):.2g}" for each in noise)
+    count = len(findings.joints)
+    noise = [float(f"{findings.touch_noise_rad(k):.3g}") for k in range(count)]
+    degrees = ", ".join(f"{math.degrees(findings.noise_rad(k)):.2g}" for k in range(count))
     lines = [
         _comment("Written by ulna live commission. Paste it into a study, a plan or"),
-        _comment("a simulation in mm and rad. Standard deviations; the encoders in degrees:"),
+        _comment("a simulation in mm and rad. Standard deviations of a touch, which is the"),
+        _comment(f"mean of {WINDOWS_S[0]:g} s at least; of one sample they are, in degrees:"),
         _comment(f"{degrees}."),
         "[noise]",
         f"encoder = {toml_value(noise)}",
