@@ -36,7 +36,8 @@ pub fn gains(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> R
         .map(|(rows, gains)| {
             // a row of a candidate is a column here, so that its numbers stand together
             let found = product(both.as_ref(), MatRef::from_column_major_slice(rows, n, rows.len() / n));
-            let mut here = Here { found: &found, n, inner: vec![0.0; each * each], told: vec![0.0; each * (height - n)] };
+            let mut here =
+                Here { found: &found, n, inner: vec![0.0; each * each], told: vec![0.0; each * (height - n)] };
             gains.iter_mut().enumerate().for_each(|(k, gain)| *gain = here.gain(k * each, each) / asked as f64);
             rows.iter().all(|value| value.is_finite())
         })
