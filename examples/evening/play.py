@@ -140,7 +140,7 @@ def main(folder: Path) -> None:
         line.wait()
         ends = threading.Thread(target=_touch_ends, args=(arm, bar_mm), daemon=True)
         ends.start()
-        command = "live measure touched/result my-arm/source.toml --still --feature length --seconds 30 -o gauge.csv"
+        command = "live measure touched/result my-arm/source.toml --still --feature length --seconds 36 -o gauge.csv"
         run(folder, "measure", command, lambda _: None)
         ends.join()
     finally:
