@@ -7,6 +7,7 @@ today; `tests/examples/test_evening.py` plays the same hand without the clock.
 import re
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -50,7 +51,9 @@ def _shown(text: str, first: str = "", again: str = "") -> str:
             shown.append(line)
         elif many == SHOWN + 1:
             shown.append("…")
-    return "\n".join(shown) + "\n"
+    # as a terminal of 80 columns shows it
+    folded = [part for line in shown for part in (textwrap.wrap(line, 80) if len(line) > 80 else [line])]
+    return "\n".join(folded) + "\n"
 
 
 if __name__ == "__main__":
