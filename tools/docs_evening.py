@@ -7,17 +7,20 @@ today; `tests/examples/test_evening.py` plays the same hand without the clock.
 import re
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "examples" / "evening"
-PARTS: dict[str, tuple[str, ...]] = {
-    "guess": (),
-    "commission": (),
+PARTS: dict[str, tuple[str, str]] = {
+    "guess": ("", ""),
+    "commission": ("", ""),
     "touch": ("Touch 3,", "Fresh places touched"),
-    "measure": ("p1:", "f2 length (p3 p4)"),
+    "measure": ("", ""),
 }
 """Name → the lines between which some are left out, where there are very many."""
+MANY, SHOWN = "x ", 2
+"""Lines that come every second, and how many of them in a row are shown."""
 
 
 def evening_outputs() -> dict[str, str]:
@@ -41,7 +44,16 @@ def _shown(text: str, first: str = "", again: str = "") -> str:
         begin = next(k for k, line in enumerate(lines) if line.startswith(first))
         end = next(k for k, line in enumerate(lines) if line.startswith(again))
         lines = [*lines[: begin + 1], "…", *lines[end:]]
-    return "\n".join(lines) + "\n"
+    shown, many = list[str](), 0
+    for line in lines:
+        many = many + 1 if line.startswith(MANY) else 0
+        if many <= SHOWN:
+            shown.append(line)
+        elif many == SHOWN + 1:
+            shown.append("…")
+    # as a terminal of 80 columns shows it
+    folded = [part for line in shown for part in (textwrap.wrap(line, 80) if len(line) > 80 else [line])]
+    return "\n".join(folded) + "\n"
 
 
 if __name__ == "__main__":

@@ -136,6 +136,8 @@ def main(folder: Path) -> None:
         line.wait()
         # a gauge of another length, in a place where nothing was touched, twice from end to end
         bar_mm = hand.put(np.array([250.0, -260.0, 220.0]), 0.4, 0.3, GAUGE_MM)
+        arm.go(arm.postures(bar_mm[0], 20)[0])
+        line.wait()
         ends = threading.Thread(target=_touch_ends, args=(arm, bar_mm), daemon=True)
         ends.start()
         command = "live measure touched/result my-arm/source.toml --still --feature length --seconds 36 -o gauge.csv"
@@ -153,8 +155,8 @@ def fill_in(plan: Path) -> None:
 
 
 def _touch_ends(arm: HomeBuilt, bar_mm: F64) -> None:
-    time.sleep(5.0)  # until the command listens
-    for end in (0, 1, 0, 1):
+    time.sleep(10.0)  # until the command listens and has taken the first
+    for end in (1, 0, 1):
         arm.go(arm.postures(bar_mm[end], 20)[0], rest_s=4.0)
 
 

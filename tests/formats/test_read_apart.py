@@ -164,14 +164,16 @@ def test_a_library_that_goes_in_circles_is_stopped(
     groups: tuple[Path, bytearray], file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The real one: the first free block of the heap of names (its offset at byte 16, its data at 24) is followed by
-    itself."""
+    itself. Some of its versions go round for ever, and some until they have no more room."""
     path, content = groups
     heap = content.index(b"HEAP")
     free, data = (int.from_bytes(content[heap + k : heap + k + 8], "little") for k in (16, 24))
     content[data + free : data + free + 8] = free.to_bytes(8, "little")
     path.write_bytes(content)
     monkeypatch.setattr(asking, "QUIET_S", 2)
-    assert f"{path}: damaged: its reader gave no sign for 2 s and was stopped" in told(path)
+    said = told(path)
+    assert str(path) in said
+    assert "damaged: its reader gave no sign for 2 s and was stopped" in said or "memory allocation failed" in said
     monkeypatch.undo()
     assert told(file) == "", "the next file is read"
 

@@ -16,6 +16,8 @@ import pytest
 from tests.cli_runs import assert_bad_input, run
 from tests.live.parts import Pty, pty
 
+from ulna.ground.errors import UlnaInputError
+from ulna.live.ending import JOURNAL, nothing_left
 from ulna.live.journal import EVENT, SAMPLES, Journal, Reading
 from ulna.live.samples import Hello
 
@@ -210,3 +212,21 @@ def test_a_recording_that_ends_before_a_reading_is_none(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "run.journal: not written, for no reading came" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_touching_without_a_reading_leaves_nothing(root: Path, tmp_path: Path) -> None:
+    """Nor does it take away what stood there."""
+    (tmp_path / "names.csv").write_text("q1,q2,q3,q4,q5,q6,q7\n")
+    source = tmp_path / "source.toml"
+    source.write_text(f'format = "ulna-source/1"\nurl = "file:{tmp_path}/names.csv"\n[map]\nunit = "rad"\n')
+    arm, plan = root / "examples/platinum/platinum.toml", root / "examples/platinum/plan.toml"
+    done = run("live", "touch", arm, plan, source, "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert "ended without a reading" in done.stderr
+    assert not (tmp_path / "out").exists()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "mine.txt").write_text("mine")
+    (tmp_path / "out" / JOURNAL).write_text("begun")
+    with pytest.raises(UlnaInputError), nothing_left(tmp_path / "out", lambda: False):
+        raise UlnaInputError("no reading")
+    assert [each.name for each in (tmp_path / "out").iterdir()] == ["mine.txt"]

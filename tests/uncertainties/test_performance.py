@@ -134,7 +134,7 @@ def test_the_truth_is_where_the_certificate_says(arm: Arm) -> None:
     unit = np.where(np.array(arm.parameter_units) == "mm", 0.01, 1e-5) * free
     mover = Mover(arm, TRAVEL)
     held = []
-    for seed in range(20):
+    for seed in range(10):
         factor = np.exp(rng.uniform(np.log(0.1), np.log(20.0)))
         truth = arm.with_parameters(arm.parameters + factor * unit * rng.standard_normal(len(unit)))
         asked = certificate(POINT, LENGTH)
@@ -150,7 +150,7 @@ def test_the_truth_is_where_the_certificate_says(arm: Arm) -> None:
             low, high = np.quantile(lengths, (0.025, 0.975))
             p = truth.tip(q_rad)
             held.append(bool(low < np.linalg.norm(p[1] - p[0]) < high))
-    assert np.mean(held) == pytest.approx(0.95, abs=0.06)
+    assert np.mean(held) == pytest.approx(0.95, abs=0.08)
 
 
 PERFORMANCE = Path(__file__).parents[2] / "examples" / "platinum" / "performance.toml"

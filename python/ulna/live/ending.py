@@ -5,6 +5,8 @@ The journal is there from the first touch on; a session that was interrupted goe
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -61,6 +63,20 @@ def begin(folder: Path, hello: Hello, **head: object) -> tuple[Journal, list[Tou
     except OSError as error:
         raise UlnaInputError(f"{folder}: cannot be made ({error.strerror}). Choose another place.") from None
     return Journal.create(path, hello, **head), [], None
+
+
+@contextmanager
+def nothing_left(folder: Path, anything: Callable[[], bool]) -> Iterator[None]:
+    """Where a session is refused before anything came of it, its journal and its folder go. anything: whether something
+    did."""
+    try:
+        yield
+    except UlnaInputError:
+        if not anything():
+            (folder / JOURNAL).unlink(missing_ok=True)
+            with suppress(OSError):  # something else is in it
+                folder.rmdir()
+        raise
 
 
 def touches_in(path: Path) -> list[Touch]:

@@ -73,7 +73,7 @@ def touch(
     from ulna.cli import output
     from ulna.cli.live.at_the_arm import Bench
     from ulna.cli.options import one_of
-    from ulna.live.ending import JOURNAL, begin, fresh_places_in, judge, write_result, write_study
+    from ulna.live.ending import JOURNAL, begin, fresh_places_in, judge, nothing_left, write_result, write_study
     from ulna.live.purpose import purpose_of
     from ulna.live.session import Session
     from ulna.live.stream import streaming
@@ -97,8 +97,9 @@ def touch(
         )
         stated = stream.stated.file.model_dump(mode="json", exclude_none=True)
         head = {"source": stated, "arm": nominal.name, "artefact": purpose.spec.artefact.name}
+        began = (out / JOURNAL).exists()
         journal, known, cut = begin(out, stream.source.hello, **head)
-        with journal:
+        with journal, nothing_left(out, lambda: began or bool(session.fit.touches)):
             session.journal = journal
             if cut is not None:
                 output.say(cut)

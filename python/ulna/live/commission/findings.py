@@ -16,8 +16,8 @@ from ulna.live.mapping import TURN
 from ulna.live.still import WINDOWS_S
 
 CARRIED = 0.5
-"""Of a step: with so much noise the mean of whole steps is that of what they were rounded from, to a hundredth of a step
-(Gray and Stockham, IEEE Trans. Inf. Theory 39, 1993, 805: the ripple is of exp(-2 π² σ²))."""
+"""Of a step: with so much noise the mean of whole steps is that of what they were rounded from, to a hundredth of a
+step: the first harmonic of what rounding adds is exp(-2 π² σ²) / π steps, by the noise's characteristic function."""
 FULL_TURN = 1.0
 """From so many turns on it is asked whether a joint turns on and on."""
 
