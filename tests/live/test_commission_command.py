@@ -107,7 +107,7 @@ def test_what_the_command_refuses(recording: HomeBuilt, tmp_path: Path) -> None:
     assert_bad_input(run(*words, "--yes", "--joints", "5", "--arm", tmp_path / "drawn.toml"), "drawn.toml has 6")
     assert_bad_input(run(*words, "--yes", "--joints", "6", "--signs", "guessed"), "--signs")
     six = ("--yes", "--arm", tmp_path / "drawn.toml")
-    assert_bad_input(run(*words, *six, "--zeros", "guessed"), "--zeros", "posture or unknown")
+    assert_bad_input(run(*words, *six, "--zeros", "guessed"), "--zeros", "posture, known or unknown")
     assert_bad_input(run(*words, *six, "--zeros", "posture", "--signs", "unknown"), "--zeros", "signs")
     assert_bad_input(run(*words, *six, "--zeros", "unknown", "--posture", "0,0,0,0,0,0"), "--posture", "Leave one")
     assert_bad_input(run(*words, *six, "--posture", "0,90,0"), "--posture: got 3 angles, expected 6")

@@ -16,10 +16,10 @@ from ulna.arm.arm import Arm
 from ulna.ground.errors import UlnaInputError
 from ulna.live.commission.commissioning import Commissioning
 from ulna.live.commission.posture import direction, posture
-from ulna.live.commission.writing import commissioned
+from ulna.live.commission.writing import arm_text, commissioned, noise_text
 from ulna.live.samples import Samples
 from ulna.live.tables import MapTable
-from ulna.proposals.arms import by_reach
+from ulna.proposals.arms import Drawn, by_reach
 
 TO = {"forward": (1, 0, 0), "back": (-1, 0, 0), "to the left": (0, 1, 0), "to the right": (0, -1, 0)}
 TO |= {"straight up": (0, 0, 1), "straight down": (0, 0, -1)}
@@ -133,3 +133,19 @@ def test_left_out_the_zeros_and_signs_stay_unknown() -> None:
     made = commissioned(work.findings().with_counts(4096.0), base)
     assert [joint.sign for joint in made.joints] == [0] * 4
     assert not work.findings().zeroed
+
+
+def test_zeros_that_somebody_knows_stay() -> None:
+    """Those of the drawing, with the signs that were found; nothing has to be searched for."""
+    arm, base = HomeBuilt([0, 1, 2, 3], [1, -1, -1, 1], 4, 5), drawn(4)
+    base = replace(base, joints=tuple(replace(joint, theta0_rad=0.3 * (k < 3)) for k, joint in enumerate(base.joints)))
+    work = Commissioning(arm.hello, 4, ways=["so"] * 4)
+    found = work.take(arm.samples(arm.whole(), 0.0))
+    while found is not None:
+        work.accept()
+        found = work.take(Samples.none(4))
+    findings = replace(work.findings().with_counts(4096.0), as_drawn=True)
+    made = commissioned(findings, base)
+    assert [joint.theta0_rad for joint in made.joints] == [0.3, 0.3, 0.3, 0.0]
+    assert [joint.sign for joint in made.joints] == [1, -1, -1, 1]
+    assert "search" not in noise_text(findings) + arm_text(findings, Drawn(base, "as drawn"))

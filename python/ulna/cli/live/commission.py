@@ -13,7 +13,7 @@ from ulna.cli.running import guard
 
 UNITS = ("deg", "rad", "counts")
 SIGNS = ("turned", "unknown")
-ZEROS = ("posture", "unknown")
+ZEROS = ("posture", "known", "unknown")
 
 
 @guard
@@ -52,8 +52,8 @@ def commission(
         typer.Option(
             "--zeros",
             metavar="WORD",
-            help="posture: from one taken by eye; unknown: left to a calibration. Without --arm unknown.",
-            show_default="posture",
+            help="posture: from one taken by eye; known: as drawn; unknown: left to a calibration.",
+            show_default="posture; of what a device tells known, of --reach unknown",
         ),
     ] = None,
     posture: Annotated[

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeGuard
 
@@ -78,7 +78,7 @@ def commissioned(asked: Asked, as_json: bool) -> None:
         work = Commissioning(hello, joints, table, ways=how, posture=stands, wait_s=asked.wait_s, hold_s=asked.hold_s)
         _Going(stream, work, asked.yes).go()
         stated = stream.stated
-    findings = _whole(work.findings(), asked)
+    findings = replace(_whole(work.findings(), asked), as_drawn=_zeros(drawn, asked) == "known")
     write(findings, stated, drawn, asked.out, asked.force)
     if as_json:
         output.print_json(document(findings, asked.out))
@@ -91,12 +91,21 @@ def commissioned(asked: Asked, as_json: bool) -> None:
     output.say(f"ulna live touch {arm} {plan} {source} -o touched")
 
 
+def _zeros(drawn: Drawn, asked: Asked) -> str:
+    """From where the zeros are."""
+    if asked.zeros is not None:
+        return asked.zeros
+    if drawn.guessed or asked.signs == "unknown":
+        return "unknown"
+    return "known" if asked.arm is None else "posture"
+
+
 def _posture(drawn: Drawn, asked: Asked) -> Posture | None:
     """The posture that is asked for. Raises UlnaInputError where none can be said."""
-    zeros = asked.zeros or ("unknown" if drawn.guessed or asked.signs == "unknown" else "posture")
-    if zeros == "unknown" and asked.posture_deg is not None:
-        raise UlnaInputError("--posture: a posture is given, but --zeros unknown. Leave one of them out.")
-    if zeros == "unknown":
+    zeros = _zeros(drawn, asked)
+    if zeros != "posture" and asked.posture_deg is not None:
+        raise UlnaInputError(f"--posture: a posture is given, but --zeros {zeros}. Leave one of them out.")
+    if zeros != "posture":
         return None
     if asked.signs == "unknown":
         raise UlnaInputError(

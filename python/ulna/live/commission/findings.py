@@ -92,6 +92,8 @@ class Findings:
     holding: Holding
     unused: tuple[str, ...]
     """Of each channel that is no joint a sentence why."""
+    as_drawn: bool = False
+    """Whether somebody says that the zeros of the encoders are those of the drawing."""
 
     @property
     def uncounted(self) -> list[int]:
@@ -157,6 +159,15 @@ class Findings:
         return all(joint.zeroed for joint in self.joints)
 
     @property
+    def zeros(self) -> str:
+        """What is known of the zeros, in words."""
+        if self.as_drawn:
+            return "Zero offsets (theta0) are those of the drawing, as was said"
+        if self.zeroed:
+            return "Zero offsets (theta0) are by eye, to some degrees: a calibration finds the rest"
+        return "Zero offsets (theta0) are not known: a calibration has to search for them"
+
+    @property
     def remarks(self) -> list[str]:
         """What whoever uses the arm must know, a sentence each."""
         lines = list(self.unused)
@@ -179,6 +190,5 @@ class Findings:
         unsaid = [str(k) for k, joint in enumerate(self.joints, start=1) if not joint.sign]
         if unsaid:
             lines.append(f"sign = 0 of joint {', '.join(unsaid)}: nobody could say which way; a calibration finds it.")
-        by_eye = "Zero offsets (theta0) are by eye, to some degrees: a calibration finds the rest."
-        lines.append(by_eye if self.zeroed else "Zero offsets (theta0) are not found: a calibration searches for them.")
+        lines.append(f"{self.zeros}.")
         return lines

@@ -26,8 +26,6 @@ from ulna.proposals.arms import Drawn
 FILES = ("source.toml", "arm.toml", "noise.toml", "plan.toml")
 BY_EYE_DEG = 5.0
 """A posture that is taken by eye."""
-ZEROS_BY_EYE = "Zero offsets (theta0) are by eye, from one posture: some degrees. The calibration finds them."
-ZEROS_UNKNOWN = 'Zero offsets (theta0) were not: start the calibration with [fit] start = "search".'
 _PATHS = ("file", "bag", "virtual")
 """Urls that begin with a path."""
 
@@ -109,7 +107,9 @@ def arm_text(findings: Findings, base: Drawn) -> str:
     if base.guessed:
         lines.append("Lengths and twists are a first guess: put yours in, or let the calibration find what they are.")
     lines.append("Signs, limits and counts per turn were found with the arm in the hand.")
-    lines.append(ZEROS_BY_EYE if findings.zeroed else ZEROS_UNKNOWN)
+    lines.append(f"{findings.zeros}.")
+    if not (findings.zeroed or findings.as_drawn):
+        lines.append('In a study: [fit] start = "search".')
     if not all(joint.sign for joint in findings.joints):
         lines.append("sign = 0: nobody could say which way the encoder counts; the calibration finds it.")
     return "".join(_comment(line) + "\n" for line in lines) + "\n" + arm_toml(commissioned(findings, base.arm))
@@ -135,13 +135,16 @@ def noise_text(findings: Findings) -> str:
         "[noise]",
         f"encoder = {toml_value(noise)}",
         _comment("seat = 0.01    (of a touch, per coordinate; not found here: put yours in)"),
-        "",
-        *map(_comment, _in_a_study(findings)),
     ]
+    in_a_study = _in_a_study(findings)
+    if in_a_study:
+        lines += ["", *map(_comment, in_a_study)]
     return "\n".join(lines) + "\n"
 
 
 def _in_a_study(findings: Findings) -> list[str]:
+    if findings.as_drawn:
+        return []
     if findings.zeroed:
         return [
             "In a study, as the zeros of the encoders are known by eye:",
