@@ -23,6 +23,10 @@ MANY, SHOWN = "x ", 2
 """Lines that come every second, and how many of them in a row are shown."""
 
 
+FILES = [f"evening-{name}.txt" for name in PARTS]
+"""Below docs/output."""
+
+
 def evening_outputs() -> dict[str, str]:
     """File below docs/output → text."""
     sys.path.insert(0, str(EXAMPLE))
