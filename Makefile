@@ -49,7 +49,7 @@ wheel: build ## build the wheel, examples and all, into target/wheels/
 # ---------------------------------------------------------------- test
 
 .PHONY: test
-test: prerequisites ## the whole suite: Rust, Python, lint, types, docs
+test: prerequisites ## the suite: Rust, Python, lint, types, docs; `make test-long` has the rest
 	@$(MAKE) --jobs=2 --output-sync=target build rust-test # one core is enough for linking
 	@$(MAKE) --jobs=2 --output-sync=target lint types docs # each is one process
 	@$(MAKE) python-test
@@ -82,7 +82,11 @@ rust-test: ## tests of the core, and its documentation with warnings as errors
 
 .PHONY: python-test
 python-test: build ## tests through the public door
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 -m "not long"
+
+.PHONY: test-long
+test-long: build ## what takes minutes: reruns of the literature, coverage by hundreds of arms, pages made anew, kills
+	$(BIN)/python -m pytest -n 2 -m long
 
 .PHONY: wheel-test
 wheel-test: wheel ## install the wheel into a fresh environment and run `ulna demo` there (a minute or two)

@@ -94,6 +94,7 @@ def test_the_order_that_is_there_is_told_from_the_one_that_is_not() -> None:
     assert second.verdict in ("undecided", "not-earned")
 
 
+@pytest.mark.long
 def test_a_verdict_by_few_groups_needs_more() -> None:
     """Student's factor: two standard deviations of chance would be called earned far too often with three groups."""
     rng = np.random.default_rng(1)

@@ -31,6 +31,7 @@ def seats(checks: int, rng: np.random.Generator) -> np.ndarray:
     return np.stack([figure.value for figure in (*single_point(touches), *half_ranges(touches))], axis=1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("earlier", [5, 10, 25])
 def test_a_signed_figure_is_out_by_chance_as_often_as_was_asked(earlier: int) -> None:
     """By its limits, and by its average: each at alpha, 5 % here."""
@@ -44,6 +45,7 @@ def test_a_signed_figure_is_out_by_chance_as_often_as_was_asked(earlier: int) ->
         assert rules.count(rule) / 3000 == pytest.approx(0.05, abs=0.012), rule
 
 
+@pytest.mark.long
 def test_a_whole_check_of_a_steady_arm_is_out_by_chance_in_one_of_thirty() -> None:
     """Eight figures, of a seat and of a bar in three places, after 15 checks: what docs/check.md says."""
     rng = np.random.default_rng(5)

@@ -191,6 +191,7 @@ def _mount(*words: str) -> int:
     return subprocess.run(["mount", *words], capture_output=True, check=False).returncode
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("mount") is None, reason="no mount")
 def test_a_real_disk_that_takes_nothing_is_told_by_every_command(bench: Path, disk: tuple[Path, str]) -> None:
     place, reason = disk

@@ -33,6 +33,7 @@ def decisive(bench: Bench) -> list[Target]:
     return bench.targets[moves[-1] - 1 : moves[-1] + 2]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("force", [False, True], ids=["", "--force"])
 @pytest.mark.parametrize("name", ["calibrate", "certificate"])
 def test_old_until_it_is_moved_and_new_from_then_on(folder: Path, name: str, force: bool) -> None:

@@ -8,6 +8,7 @@ import pytest
 from ulna.control.chart import chart
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("n", "later"), [(5, 1), (5, 10), (10, 10), (20, 20)])
 def test_false_alarms_are_as_rare_as_alpha(n: int, later: int) -> None:
     rng, alpha, tries = np.random.default_rng(n + later), 0.02, 4000

@@ -31,6 +31,7 @@ def test_the_comparison_sees_what_it_should():
     assert same("one line", "one line\nanother") != []
 
 
+@pytest.mark.long
 @pytest.mark.timeout(900)  # it runs all that the pages show
 def test_outputs_of_commands(root, tools):
     """What a clock or a thousand fits is in has a test of its own."""
@@ -54,6 +55,7 @@ def test_messages_on_the_errors_page(root, tools):
     assert same(shown, tools["docs_errors"].error_page()) == []
 
 
+@pytest.mark.long
 @pytest.mark.timeout(900)  # it runs all that the pages show
 def test_tables_of_real_readings(root, tools, shared_data):
     """Those that take seconds; the long ones are made by `make docs-output`, from the same studies."""

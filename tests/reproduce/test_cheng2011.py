@@ -17,6 +17,8 @@ from ulna.reproduce import STUDIES, cheng2011
 from ulna.reproduce.cheng2011 import arms
 from ulna.reproduce.cheng2011.convergence import WRONG_BY_RAD
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture(scope="module")
 def rerun(tmp_path_factory):

@@ -19,7 +19,7 @@ from ulna.reproduce.ways import comparison, trial
 from ulna.reproduce.ways.arms import ARMS, BAR_MM, SEVEN, SIX, true_arm
 from ulna.reproduce.ways.work import Rerun, outcomes_table
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.long]
 
 QUICK = ("shimojima2002", "santolaria2010", "wang2007", "cheng2010")
 SEARCHING = ("gao2009", "wang2010")

@@ -104,6 +104,7 @@ def test_three_loads_in_one_study_are_found_with_compliance_and_not_without(tmp_
     assert evaluated["length_error_rms_mm"] < 0.03
 
 
+@pytest.mark.long
 def test_uncertainties_of_compliance_hold_the_truth_under_load(tmp_path: Path) -> None:
     """Of 20 simulated studies: compliances are off by as much as they say."""
     ratios = []

@@ -125,6 +125,7 @@ def test_tighter_figures_keep_tighter_arms(arm: Arm) -> None:
     assert spread(0.2) > 2 * spread(0.06)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_truth_is_where_the_certificate_says(arm: Arm) -> None:
     """Arms drawn as the file says, each with the certificate that its own test gave: the interval of a length of such

@@ -214,6 +214,7 @@ def test_held_parameters_count_as_exact_and_are_told(calibrated) -> None:
     assert told.endswith(": joint.3.a")  # the base frame moves no length
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
     """Virtual calibrations, each with a point, a length and a ball measured afterwards; benchmarks/coverage does it
