@@ -93,6 +93,7 @@ def test_a_folder_of_studies_on_a_cluster(cluster, tmp_path, root) -> None:
         assert one.read_bytes() == other.read_bytes()
 
 
+@pytest.mark.long
 def test_a_plan_and_whole_calibrations_redrawn_on_a_cluster(cluster, tmp_path, root) -> None:
     """The same figures as from threads; finished work is kept, and the same command goes on from it."""
     examples = root / "examples" / "platinum"
