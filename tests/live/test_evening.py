@@ -15,10 +15,11 @@ from ulna.live.commission.commissioning import Commissioning
 from ulna.live.commission.geometry import geometry
 from ulna.live.commission.posture import posture
 from ulna.live.commission.writing import write
+from ulna.live.events import Happened
 from ulna.live.faults import Fault
 from ulna.live.purpose import purpose_of
 from ulna.live.samples import Hello, Samples
-from ulna.live.session import Happened, Session
+from ulna.live.session import Session
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import load_source, read_source
 from ulna.live.stream import Stream

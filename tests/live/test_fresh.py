@@ -14,9 +14,11 @@ import ulna
 from ulna.artefacts.artefact import Artefact
 from ulna.cli.live.at_the_arm import Bench
 from ulna.cli.printed.fresh import fresh_lines
-from ulna.live.ending import JOURNAL, begin, fresh_places_in, judge, touches_in, write_result, write_study
+from ulna.live.ending import JOURNAL, begin, fresh_places_in, touches_in, write_result, write_study
+from ulna.live.events import Event, Happened
 from ulna.live.fresh import done, next_fresh
-from ulna.live.session import Event, Happened, Session
+from ulna.live.judging import judge
+from ulna.live.session import Session
 from ulna.live.touches import Touch
 from ulna.live.trigger import Refused
 
@@ -177,7 +179,7 @@ def test_fresh_places_are_different_ones_whatever_is_touched(artefact: Artefact)
     place, places_mm = 1, []
     for number in range(1, 200):
         own = [touch for touch in touches if touch.standing == str(place)]
-        suggestion = next_fresh(guide, artefact, place, own)
+        suggestion = next_fresh(guide, place, own)
         if own and not suggestion.here:
             place += 1
         if not suggestion.here or not own:
@@ -186,7 +188,7 @@ def test_fresh_places_are_different_ones_whatever_is_touched(artefact: Artefact)
         touch = Touch(number, artefact.name, str(place), feature, 0, suggestion.q_rad, held_out=True)
         touches.append(touch)
         fit.add(touch)
-        if done(guide, artefact, touches) == 4:
+        if done(guide, touches) == 4:
             break
     assert fit.counting() == []
     if artefact.frame == "arm":

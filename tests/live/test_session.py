@@ -13,10 +13,11 @@ from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 import ulna
 from ulna.cli.printed.touching import BEGIN_AGAIN, happened_lines
 from ulna.live.ending import JOURNAL, begin, touches_in, write_result, write_study
+from ulna.live.events import Event, Happened
 from ulna.live.faults import JUMP, Fault
 from ulna.live.guide import Guide
 from ulna.live.journal import SAMPLES, Journal, Reading
-from ulna.live.session import Event, Happened, Session
+from ulna.live.session import Session
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream
 from ulna.live.trigger import Refused

@@ -7,23 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import polars as pl
 
-from ulna.arm.arm import Arm
 from ulna.arm.file import arm_toml
-from ulna.arm.given import arm_and_noise
 from ulna.artefacts.kinds import kind_of
 from ulna.artefacts.readings import InputFile, Readings
 from ulna.calibration.calibrate import calibrate
-from ulna.calibration.evaluate import Evaluation, evaluate
-from ulna.calibration.figures import overall_figures
-from ulna.calibration.held_out import judged
-from ulna.calibration.placements import Figures
 from ulna.calibration.result import Result
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError
@@ -32,12 +25,10 @@ from ulna.live.running import RunningFit
 from ulna.live.samples import Hello
 from ulna.live.touches import Touch, from_dict, held_out
 from ulna.simulation.study_files import names_for, study_toml, write_tables
-from ulna.study.file import study_file
 from ulna.study.study import Study
 
 JOURNAL = "session.journal"
 RESULT = "result"
-JUDGED = "held-out"
 FIT, CHECK = "fit", "held out"
 SPLIT = {"column": "set", "fit": FIT, "check": CHECK}
 """How a study tells readings to fit from those held out."""
@@ -150,43 +141,3 @@ def write_result(study: Path) -> Result:
     result = calibrate(Study.load(study))
     result.save(study.parent / RESULT)
     return result
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """What a calibrated arm makes of the places that were held out."""
-
-    places: int
-    evaluation: Evaluation
-    """As `ulna evaluate` has it."""
-    before: Figures
-    """The same figures of the arm where the session began."""
-    expected_mm: float | None
-    """Root mean square of length errors as it is expected from what is known; None where no lengths were touched."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """JSON types only."""
-        found = self.evaluation
-        return {
-            "places": self.places,
-            "readings": found.readings,
-            "rms_mm": found.rms_mm,
-            "overall": dict(found.overall),
-            "before": dict(self.before),
-            "expected_length_error_rms_mm": self.expected_mm,
-            "coverage": None if found.coverage is None else asdict(found.coverage),
-        }
-
-
-def judge(result: Result, study: Path, begun: Arm) -> HeldOut | None:
-    """The places held out, by an arm that was not fitted to them; written beside the study as `ulna evaluate` does.
-    None where there are none. Raises UlnaInputError."""
-    if all(entry.split is None for entry in study_file(study).readings):
-        return None
-    kept = Study.load(study, "check")
-    found = evaluate(result, kept)
-    found.save(study.parent / JUDGED)
-    arm, noise = arm_and_noise(result)
-    errors_mm = judged(arm, noise, kept.with_arm(arm)).errors_mm
-    expected_mm = float(np.sqrt((errors_mm[:, 1] ** 2).mean())) if len(errors_mm) else None
-    return HeldOut(len(found.artefacts), found, overall_figures(begun, kept.with_arm(begun)), expected_mm)

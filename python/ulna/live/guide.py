@@ -22,7 +22,7 @@ from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
 from ulna.live.at_hand import AtHand
 from ulna.live.running import RunningFit, SoFar
-from ulna.live.touches import Touch, present, readings_of, tips
+from ulna.live.touches import Touch, readings_of
 from ulna.live.worth import Worth, mean_variance, variances
 from ulna.planning.candidates import Candidates, draw
 from ulna.planning.information import Coordinates, candidate_rows
@@ -45,10 +45,6 @@ LOOKED_AHEAD = 300
 MOST_AHEAD = 25
 OTHER_RAD = np.radians(10.0)
 """A posture is another where one joint at least is so far from where it was."""
-ALONE = 4
-"""Touches that a fresh place of a single feature is judged by: its scatter is all that there is."""
-DRAWN, APART_MM = 100, 60.0
-"""Candidates of which a fresh place is one, and how far it is from what was touched, so that a move is seen."""
 MOVED_MM = 1.0
 """The arm has moved so far that what touches are worth is looked at anew."""
 LOOKED_AT = 200
@@ -87,15 +83,17 @@ class Guide:
 
     def __init__(self, fit: RunningFit, spec: PlanSpec, seed: int = 0, candidates: Candidates | None = None) -> None:
         """candidates: those of a guide for the same drawing and specification, which need not be drawn again."""
-        self._fit = fit
+        self.fit = fit
+        """What is known of the arm."""
         self._rng = np.random.default_rng([seed, 97])
         arm = fit.arm
         self._probe = arm.probe_index(spec.probe)
         features = max(len(spec.artefact.features), 1)
         scattered = kind_of(spec.artefact).scattered
         touches = spec.touches if scattered else max(1, -(-IN_A_PLACE // features))
-        self._per_place = touches if scattered else touches * features
-        self.spec = replace(spec, candidates=max(1, TOUCHES // self._per_place), touches=touches, seed=seed)
+        self.per_place = touches if scattered else touches * features
+        """Touches by which a new place is judged."""
+        self.spec = replace(spec, candidates=max(1, TOUCHES // self.per_place), touches=touches, seed=seed)
         self.mover = Mover(arm, travel_or_limits(arm, spec.travel_rad, spec.label))
         """Finds postures."""
         self.candidates = candidates or draw(self.spec, self.mover, self._probe, self._rng)
@@ -108,14 +106,15 @@ class Guide:
         self._rows: F64 | None = None
         self._tests: F64 | None = None
         self._at_mm: F64 | None = None
-        self._at_hand = AtHand(fit, self.spec, self.mover, self._rng)
+        self.at_hand = AtHand(fit, self.spec, self.mover, self._rng)
+        """Finds them on the features where the artefact stands."""
         self._refused_rad: list[F64] = []
         self._planned: int | None = None
         """Number of the candidate for which the artefact was put where it stands."""
 
     def worth(self, so_far: SoFar) -> Worth:
         """What lengths are worth with what is known so far."""
-        return Worth.of(self._look()[1], so_far.covariance, test_mm(self._fit.arm, self.spec, self._probe))
+        return Worth.of(self._look()[1], so_far.covariance, test_mm(self.fit.arm, self.spec, self._probe))
 
     def next(self, so_far: SoFar, standing: str | None = None) -> Suggestion:
         """The best touch now. standing: where the artefact stands; None: nowhere yet. Raises UlnaInputError."""
@@ -129,14 +128,14 @@ class Guide:
         unfinished = self._unfinished(own)
         if unfinished is not None:
             return unfinished
-        gains = _core.gains(rows, so_far.triangle, tests) / self._per_place
+        gains = _core.gains(rows, so_far.triangle, tests) / self.per_place
         best = int(gains.argmax())
         if own and len(own) < MOST_HERE:
             here = self._here(own, total)
             if here is not None and here.gain * WORTH_MOVING >= gains[best] / total:
                 return here
         self._planned = best
-        return self._in_new_place(best, 0, float(gains[best]) / total)
+        return self.in_new_place(best, 0, float(gains[best]) / total)
 
     def refused(self, suggestion: Suggestion) -> None:
         """Whoever followed it came to a posture that was touched before: it is not suggested again."""
@@ -159,7 +158,7 @@ class Guide:
             triangle = np.asarray(np.linalg.qr(np.concatenate([triangle, some[best]]), mode="r"))
             now = mean_variance(tests, triangle)
             if now + beside <= goal:
-                return place * self._per_place
+                return place * self.per_place
         return None
 
     @property
@@ -167,8 +166,8 @@ class Guide:
         """Combinations of the free parameters that touches of this artefact can determine at all."""
         rows = self._look()[0]
         free = self._arm_free()
-        units = np.array(self._fit.arm.parameter_units)[free]
-        natural = np.where(units == "mm", 1.0, self._fit.arm.core.reach_mm(self._probe))
+        units = np.array(self.fit.arm.parameter_units)[free]
+        natural = np.where(units == "mm", 1.0, self.fit.arm.core.reach_mm(self._probe))
         return Coordinates.of(rows[:, :, : len(free)].reshape(-1, len(free)), natural).rank
 
     def any_touch(self, rng: np.random.Generator, standing: str | None, most: int) -> Suggestion:
@@ -178,59 +177,17 @@ class Guide:
         if unfinished is not None:
             return unfinished
         if own and len(own) < most:
-            points_mm, q_rad, feature = self._at_hand.postures(own)
+            points_mm, q_rad, feature = self.at_hand.postures(own)
             if len(q_rad):
                 k = int(rng.integers(len(q_rad)))
-                return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
+                return self.suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
         best = int(rng.integers(len(self.candidates)))
         self._planned = best
-        return self._in_new_place(best, 0, 0.0)
-
-    def fresh(self, place: int, own: Sequence[Touch]) -> Suggestion:
-        """A touch to judge by: its place is any that is no earlier one, not the best. It follows from the number of the
-        place, and is the same after an interruption. own: the touches there already."""
-        rng = np.random.default_rng([self.spec.seed, 89, place, len(own)])
-        kind, artefact = kind_of(self.spec.artefact), self.spec.artefact
-        number = self._elsewhere(place)
-        if kind.placed(artefact):
-            untouched = [len(own)] if kind.scattered else self._at_hand.untouched(own)
-            if untouched:
-                return self._in_new_place(number, untouched[0], 0.0, bool(own))
-        points_mm, q_rad, feature = self._at_hand.postures(own) if kind.placed(artefact) else self._at_hand.fixed()
-        if not len(q_rad):
-            return self._in_new_place(number, 0, 0.0, bool(own))
-        k = int(rng.integers(len(q_rad)))
-        return self._suggestion(int(feature[k]), q_rad[k], points_mm, True, 0.0)
-
-    def _elsewhere(self, place: int) -> int:
-        """Of some candidates at random the first that stands apart from all that was touched, else the one farthest."""
-        rng, candidates = np.random.default_rng([self.spec.seed, 89, place, 0]), self.candidates
-        some = rng.permutation(len(candidates))[:DRAWN]
-        name = self.spec.artefact.name
-        earlier = {
-            (touch.standing, touch.feature): touch
-            for touch in present(self._fit.touches)
-            if touch.artefact == name and touch.standing != str(place)
-        }
-        if not earlier:
-            return int(some[0])
-        at_mm, touched_mm = candidates.features_mm[candidates.place[some]], tips(self._fit.arm, list(earlier.values()))
-        between = np.linalg.norm(at_mm[:, :, None] - touched_mm, axis=-1).min(axis=(1, 2))
-        apart = np.flatnonzero(between > APART_MM)
-        return int(some[apart[0] if len(apart) else between.argmax()])
-
-    def judges(self, own: Sequence[Touch]) -> bool:
-        """Whether the touches in one place are enough to judge by."""
-        kind, artefact = kind_of(self.spec.artefact), self.spec.artefact
-        if not kind.placed(artefact):
-            return len(own) > 0
-        if kind.scattered:
-            return len(own) >= self._per_place
-        return not self._at_hand.untouched(own) and len(own) >= (ALONE if len(artefact.features) == 1 else 1)
+        return self.in_new_place(best, 0, 0.0)
 
     def _own(self, standing: str) -> list[Touch]:
         name = self.spec.artefact.name
-        return [each for each in self._fit.counting() if (each.artefact, each.standing) == (name, standing)]
+        return [each for each in self.fit.counting() if (each.artefact, each.standing) == (name, standing)]
 
     def _unfinished(self, own: Sequence[Touch]) -> Suggestion | None:
         """What a place was chosen for and is not touched yet: a feature, or the next place on a surface; None where
@@ -238,16 +195,16 @@ class Guide:
         if not own or self._planned is None:
             return None
         if kind_of(self.spec.artefact).scattered:
-            return self._in_new_place(self._planned, len(own), 0.0, True) if len(own) < self._per_place else None
-        untouched = self._at_hand.untouched(own)
-        return self._in_new_place(self._planned, untouched[0], 0.0, True) if untouched else None
+            return self.in_new_place(self._planned, len(own), 0.0, True) if len(own) < self.per_place else None
+        untouched = self.at_hand.untouched(own)
+        return self.in_new_place(self._planned, untouched[0], 0.0, True) if untouched else None
 
     def _fixed(self, so_far: SoFar, total: float) -> Suggestion:
         """The best touch of features whose places are known in the arm's frame."""
         import ulna._core as _core
 
         artefact = self.spec.artefact
-        points_mm, q_rad, feature = self._at_hand.fixed()
+        points_mm, q_rad, feature = self.at_hand.fixed()
         count = len(q_rad)
         if not count:
             raise UlnaInputError(
@@ -255,16 +212,17 @@ class Guide:
                 "within reach. Move it, or widen the travel."
             )
         touches = [Touch(k + 1, artefact.name, str(k), int(feature[k]), self._probe, q_rad[k]) for k in range(count)]
-        rows = self._padded(self._fit.rows_of(readings_of(touches, artefact)).reshape(count, -1, len(self._fit.free())))
+        rows = self._padded(self.fit.rows_of(readings_of(touches, artefact)).reshape(count, -1, len(self.fit.free())))
         gains = _core.gains(rows, so_far.triangle, self._look()[1])
         best = int(gains.argmax())
-        return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, float(gains[best]) / total)
+        return self.suggestion(int(feature[best]), q_rad[best], points_mm, True, float(gains[best]) / total)
 
-    def _in_new_place(self, number: int, feature: int, gain: float, here: bool = False) -> Suggestion:
+    def in_new_place(self, number: int, feature: int, gain: float, here: bool = False) -> Suggestion:
+        """One touch of a candidate, by its number."""
         candidates = self.candidates
         poses = candidates.poses(np.array([number]))[0]
         points_mm = candidates.features_mm[candidates.place[number]]
-        return self._suggestion(feature, poses[feature, 0], points_mm, here, gain)
+        return self.suggestion(feature, poses[feature, 0], points_mm, here, gain)
 
     def _here(self, own: Sequence[Touch], total: float) -> Suggestion | None:
         """The best of many postures on the features where they are; None where none is found.
@@ -274,12 +232,12 @@ class Guide:
         """
         import ulna._core as _core
 
-        points_mm, q_rad, feature = self._at_hand.postures(own)
+        points_mm, q_rad, feature = self.at_hand.postures(own)
         others = _others(q_rad, [*(touch.q_rad for touch in own), *self._refused_rad])
         q_rad, feature = q_rad[others], feature[others]
         if not len(q_rad):
             return None
-        known = self._fit.without(self.spec.artefact.name, own[0].standing)
+        known = self.fit.without(self.spec.artefact.name, own[0].standing)
         tests = self._look()[1]
         gains = _core.gains(self._with_one_more(own, q_rad, feature), known.triangle, tests)
         without = self._with_one_more(own, None, None)
@@ -287,7 +245,7 @@ class Guide:
         alone = _core.gains(without, known.triangle, tests)[0] if without.shape[1] else 0.0
         best = int(gains.argmax())
         gain = float(gains[best] - alone) / total
-        return self._suggestion(int(feature[best]), q_rad[best], points_mm, True, gain)
+        return self.suggestion(int(feature[best]), q_rad[best], points_mm, True, gain)
 
     def _with_one_more(self, own: Sequence[Touch], q_rad: F64 | None, feature: I64 | None) -> F64:
         """(N, k, F) rows of the touches in one place with one of N more, each as a place of its own; without any: (1,
@@ -296,11 +254,12 @@ class Guide:
         together = readings_of(own, self.spec.artefact)
         many = together.select(np.tile(np.arange(len(own)), count))
         many.placement = Labels(np.repeat(np.arange(count), len(own)), [str(k) for k in range(count)])
-        rows = self._fit.rows_of(many if q_rad is None or feature is None else _with(many, count, q_rad, feature))
+        rows = self.fit.rows_of(many if q_rad is None or feature is None else _with(many, count, q_rad, feature))
         return np.ascontiguousarray(rows.reshape(count, -1, rows.shape[1]))
 
-    def _suggestion(self, feature: int, q_rad: F64, points_mm: F64, here: bool, gain: float) -> Suggestion:
-        arm = self._fit.arm
+    def suggestion(self, feature: int, q_rad: F64, points_mm: F64, here: bool, gain: float) -> Suggestion:
+        """A posture (n,) rad on one of the features (K, 3) mm, as it is told."""
+        arm = self.fit.arm
         pose, point_mm = np.ascontiguousarray(q_rad[None]), points_mm[feature]
         return Suggestion(
             feature=feature,
@@ -315,11 +274,11 @@ class Guide:
         )
 
     def _names(self) -> tuple[str, ...]:
-        return touchable(self.spec, self._fit.arm, self._probe).names
+        return touchable(self.spec, self.fit.arm, self._probe).names
 
     def _look(self) -> tuple[F64, F64]:
         """Rows of all candidates, and of the test lengths, at the arm as it is known."""
-        arm = self._fit.arm
+        arm = self.fit.arm
         at_mm = arm.core.tip(self._look_rad, self._probe)
         if self._rows is None or self._tests is None or self._at_mm is None or self._far(at_mm):
             self._at_mm = at_mm
@@ -334,8 +293,8 @@ class Guide:
 
     def _arm_free(self) -> I64:
         """Indices of the free parameters that are the arm's: dimensions of artefacts come after them."""
-        free = self._fit.free()
-        return free[free < len(self._fit.arm.parameter_names)]
+        free = self.fit.free()
+        return free[free < len(self.fit.arm.parameter_names)]
 
     def _tests_of(self, arm: Arm) -> F64:
         flat = self.test_rad.reshape(-1, arm.n)
@@ -344,7 +303,7 @@ class Guide:
 
     def _padded(self, rows: F64) -> F64:
         """With zeros for dimensions of artefacts that are fitted: a plan takes them as certified."""
-        more = len(self._fit.free()) - rows.shape[-1]
+        more = len(self.fit.free()) - rows.shape[-1]
         if not more:
             return np.ascontiguousarray(rows)
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], more))], axis=-1)

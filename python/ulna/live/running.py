@@ -69,8 +69,8 @@ class RunningFit:
         """All of them, the withdrawn ones and those held out too."""
         self.fitted: _core.Fitted | None = None
         """The last fit; None before the first."""
-        self.fresh = False
-        """Whether it ended, and none was tried since that did not."""
+        self.current = False
+        """Whether it is of the newest try: none failed since."""
         self._parameters: F64 | None = None
         self._names: list[str] = []
         self._sigma: float | None = None
@@ -201,7 +201,7 @@ class RunningFit:
     def tell(self) -> Identification:
         """What the touches that count determine, with why and what to do where they do not: of the last fit, or at the
         arm where it began. Raises UlnaInputError where there are none."""
-        if self.fitted is not None and self.fresh:
+        if self.fitted is not None and self.current:
             return Identification.from_core(self.fitted.identifiability)
         return identify(self.study())
 
@@ -238,14 +238,14 @@ class RunningFit:
         others. Raises UlnaInputError; where that is as they are too few, the arm is what they and the drawing say."""
         study = self.study()
         assembled = assemble(study)
-        self.fresh = False
+        self.current = False
         try:
             self.fitted = run_assembled(study, assembled, from_parameters=self._from(assembled), search=search)
         except UlnaInputError:
             if self.fitted is None:
                 self._with_drawing(study)
             raise
-        self.fresh = True
+        self.current = True
         self._parameters, self._names = self.fitted.parameters, assembled.names
         variance = self.fitted.variance
         self._sigma = float(np.sqrt(variance)) if np.isfinite(variance) else None

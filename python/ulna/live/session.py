@@ -7,7 +7,7 @@ what happened. All that happened is in its journal before it is told.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
-from ulna.live.faults import DOUBTFUL, Fault
+from ulna.live.events import Event, Happened, Meter
+from ulna.live.faults import DOUBTFUL
 from ulna.live.fresh import Fresh, done, next_fresh, stands_still
 from ulna.live.guide import Guide, Suggestion
 from ulna.live.journal import Journal
@@ -39,47 +40,6 @@ REFIT_TO = 500
 """Touches up to which the arm is fitted after each; with more after every tenth."""
 SUSPICIOUS = 5.0
 """A touch that is off by so many times the scatter of the others is asked about."""
-
-
-@dataclass(frozen=True)
-class Meter:
-    """What is known after a touch."""
-
-    so_far: SoFar
-    determinable: int
-    """Combinations of parameters that touches of this artefact can determine."""
-    worth: Worth
-    goal_u_mm: float | None
-    touches_more: int | None
-    """About how many to the goal."""
-    next: Suggestion
-    lacking: Lacking
-    """What is lost, and what is weak."""
-    fresh: Fresh | None = None
-    """Of the places that are held out; None as long as touches are fitted."""
-
-
-@dataclass(frozen=True)
-class Happened:
-    """A touch that was taken."""
-
-    touch: Touch
-    moved: bool
-    """Whether the artefact was taken for moved."""
-    scatter_mm: float | None
-    """Standard deviation of the touches of this feature in this place about their mean; None for one alone, and as long
-    as the arm follows whatever is touched."""
-    off_mm: float | None
-    """What the fit leaves of it; None before there is a fit."""
-    times: float | None
-    """The same in units of the scatter of all."""
-    apart_mm: float = 0.0
-    """Of a moved artefact: how far the tip is from where it was, by the arm as it was known."""
-    against: int = 0
-    """How often in a row it was taken for moved though it was to stay."""
-
-
-Event = Fault | Refused | Happened
 
 
 def _check_signs(arm: Arm) -> None:
@@ -231,10 +191,10 @@ class Session:
         return Meter(so_far, self.determinable, worth, self.goal_u_mm, more, suggestion, self._lacking(so_far))
 
     def _holding_out(self, so_far: SoFar, worth: Worth) -> Meter:
-        held, artefact, place = held_out(self.fit.touches), self.spec.artefact, max(self.place, 1)
+        held, place = held_out(self.fit.touches), max(self.place, 1)
         own = [touch for touch in held if touch.standing == str(place)]
-        self._suggestion = suggestion = next_fresh(self.guide, artefact, place, own)
-        fresh = Fresh(self.fresh_places, done(self.guide, artefact, held))
+        self._suggestion = suggestion = next_fresh(self.guide, place, own)
+        fresh = Fresh(self.fresh_places, done(self.guide, held))
         known = self._lacking(so_far)
         return Meter(so_far, self.determinable, worth, self.goal_u_mm, None, suggestion, known, fresh)
 

@@ -17,9 +17,10 @@ from ulna.cli.live.watching import read_on
 from ulna.cli.printed.lacking import lacking_lines
 from ulna.cli.printed.touching import happened_lines, held_out_lines, meter_lines, record_of, screen
 from ulna.ground.errors import UlnaInputError
+from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import ORDINARY, Fault
 from ulna.live.fresh import USUAL
-from ulna.live.session import Event, Happened, Meter, Session
+from ulna.live.session import Session
 from ulna.live.stream import Frames
 from ulna.live.touches import present
 from ulna.live.trigger import Refused

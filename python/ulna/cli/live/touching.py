@@ -73,7 +73,8 @@ def touch(
     from ulna.cli import output
     from ulna.cli.live.at_the_arm import Bench
     from ulna.cli.options import one_of
-    from ulna.live.ending import JOURNAL, begin, fresh_places_in, judge, nothing_left, write_result, write_study
+    from ulna.live.ending import JOURNAL, begin, fresh_places_in, nothing_left, write_result, write_study
+    from ulna.live.judging import judge
     from ulna.live.purpose import purpose_of
     from ulna.live.session import Session
     from ulna.live.stream import streaming

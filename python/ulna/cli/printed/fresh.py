@@ -8,7 +8,7 @@ from ulna.artefacts.quantities import QUANTITIES
 from ulna.calibration.coverage import P
 from ulna.cli.printed.coverage import coverage_sentence
 from ulna.ground.digits import figure_mm
-from ulna.live.ending import HeldOut
+from ulna.live.judging import HeldOut
 
 WORDS = {"rms": "rms", "max": "largest", "max_abs": "largest", "largest": "largest"}
 """Figures of a quantity that are said."""

@@ -11,8 +11,9 @@ from rich.text import Text
 
 from ulna.cli.printed.lacking import LINES
 from ulna.ground.errors import for_people
+from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import Fault
-from ulna.live.session import SUSPICIOUS, Event, Happened, Meter
+from ulna.live.session import SUSPICIOUS
 from ulna.live.touches import as_dict
 from ulna.live.trigger import Refused
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 _BAR = 10
 AGAIN = 2
 """So often in a row an artefact is not moved by whoever was asked to leave it."""
-BEGIN_AGAIN = "raise plan.known_angle (0.09 rad where zeros are by eye), and begin again."
+BEGIN_AGAIN = "raise known_angle in it (0.09 rad where zeros are by eye), and begin again."
 _KEYS = "space touch · n moved · w withdraw · h hold out · t angles right · q end"
 
 
@@ -76,7 +77,7 @@ def happened_lines(happened: Happened, names: list[str]) -> list[str]:
     if happened.moved:
         lines.append(f"It is {happened.apart_mm:.0f} mm from where it was: taken as moved, a new place.")
         if happened.against >= AGAIN:
-            lines += ["If it stands still, the arm is known less well than the plan says: end (q),", BEGIN_AGAIN]
+            lines += ["If it stands still, the arm is known less well than PLAN says: end (q),", BEGIN_AGAIN]
     if happened.off_mm is not None and happened.times is not None and happened.times > SUSPICIOUS:
         lines.append(f"{happened.off_mm:.2f} mm off, {happened.times:.0f} times the scatter: ball not seated?")
         lines.append("Repeat it, and withdraw this one (w), or keep it.")

@@ -66,11 +66,10 @@ class Commissioning:
     ) -> None:
         """table: what is known of the channels; ways: of each joint, how it is turned so that it counts as positive, in
         words; None: nobody can say; posture: one that the arm is brought to, from which the ways are, in place of
-        `ways`. wait_s: how long a joint is waited for; hold_s: how long the arm is held still;
-        rest_s: a joint that rests so long has been turned.
+        `ways`. wait_s: how long a joint is waited for; hold_s: how long the arm is held still; rest_s: a joint that
+        rests so long has been turned.
 
-        Raises UlnaInputError where there are fewer
-        channels than joints, or channels that the source does not send.
+        Raises UlnaInputError where there are fewer channels than joints, or channels that the source does not send.
         """
         table = MapTable() if table is None else table
         lacking = [name for name in table.channels or () if name not in hello.channels]
