@@ -26,10 +26,13 @@ class BeginCommission(Asked):
 
     kind: Literal["commission"]
     source: Source
-    arm: Sha256
-    """The drawing."""
-    zeros: Literal["posture", "known", "unknown"] = "posture"
-    counts_per_turn: Annotated[float, Field(gt=0)] | None = None
+    arm: Sha256 | None
+    """The drawing; None: one is guessed from `joints` and `reach_mm`, or told by the device."""
+    joints: Annotated[int, Field(ge=1, le=16)] | None = None
+    reach_mm: Annotated[float, Field(gt=0, le=1e5)] | None = None
+    zeros: Literal["posture", "known", "unknown"] | None = None
+    """From where the zero offsets are; None: as `ulna live commission` has it."""
+    counts_per_turn: Annotated[float, Field(ge=2)] | None = None
 
 
 class BeginTouch(Asked):
@@ -98,11 +101,16 @@ class DoTrust(Asked):
 
 
 class DoFeature(Asked):
-    """What points become part of: point, length, ball, circle, plane."""
+    """The next touch begins a new feature of a kind: point, length, ball, circle, plane, distance."""
 
     word: Literal["feature"]
     kind: Name
-    name: Annotated[str, Field(max_length=60)] = ""
+
+
+class DoTakeBack(Asked):
+    """The last point does not count."""
+
+    word: Literal["take-back"]
 
 
 class DoGo(Asked):
@@ -123,7 +131,7 @@ class DoAnswer(Asked):
     """The answer to a question that a commissioning asks."""
 
     word: Literal["answer"]
-    text: Annotated[str, Field(max_length=200)]
+    answer: Literal["yes", "again", "skip", "endless"]
 
 
 class DoEnd(Asked):
@@ -133,7 +141,7 @@ class DoEnd(Asked):
 
 
 Do = Annotated[
-    DoTouch | DoMoved | DoWithdraw | DoHoldOut | DoTrust | DoFeature | DoGo | DoFollow | DoAnswer | DoEnd,
+    DoTouch | DoMoved | DoWithdraw | DoHoldOut | DoTrust | DoFeature | DoTakeBack | DoGo | DoFollow | DoAnswer | DoEnd,
     Field(discriminator="word"),
 ]
 
@@ -185,7 +193,8 @@ class Unknown(Said):
     """Why something is not known, and what to do."""
 
     head: Literal["never", "not yet", "weak"]
-    names: list[str]
+    names: Sentence
+    """ "zero of joint 6 with x of probe bent and 3 more"."""
     because: Sentence
     remedy: Sentence
 
@@ -247,18 +256,23 @@ class TouchState(Said):
 class Question(Said):
     """What is asked for now."""
 
+    step: Literal["hold", "turn", "posture", "way"]
     sentence: Sentence
+    lines: list[Sentence]
     joint: int | None
-    answers: list[str]
+    """From 1; None: all of them."""
+    found: list[Sentence]
+    """What was found, where somebody is to say what becomes of it."""
+    answers: list[Literal["yes", "again", "skip", "endless"]]
     """What one may say; empty where the arm answers by moving."""
 
 
-class Found(Said):
-    """What was found of a joint."""
+class Bar(Said):
+    """A channel, while a joint is turned."""
 
-    joint: int
     channel: str
-    sentence: Sentence
+    raw: float
+    moved_deg: float
 
 
 class CommissionState(Said):
@@ -266,10 +280,10 @@ class CommissionState(Said):
 
     kind: Literal["commission"]
     question: Question | None
-    found: list[Found]
-    sentences: list[Sentence]
-    """What was said so far."""
-    done: bool
+    """None: all is found."""
+    steps: int
+    steps_done: int
+    bars: list[Bar]
 
 
 class Point(Said):
@@ -292,18 +306,30 @@ class Feature(Said):
     why_not: Sentence | None
 
 
+class TipNow(Said):
+    """Where the tip is."""
+
+    values: list[Value]
+    """x, y, z; without numbers where they are not determined."""
+    why_not: Sentence | None
+    distance: Value | None
+    to: str | None
+    """Name of the point that the distance is to."""
+    still: bool | None
+    warnings: list[Sentence]
+
+
 class MeasureState(Said):
     """Of `measure`."""
 
     kind: Literal["measure"]
     points: list[Point]
     features: list[Feature]
-    tip: list[Value]
-    """x, y, z now; without values where they are not determined."""
-    distance: Value | None
-    to: str | None
-    warnings: list[Sentence]
-    why_not: Sentence | None
+    kinds: list[str]
+    """What touches can be made into."""
+    by: str
+    tip: TipNow | None
+    remarks: list[Sentence]
 
 
 State = Annotated[WatchState | CommissionState | TouchState | MeasureState, Field(discriminator="kind")]

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from ulna.serve.contract.activities import Unfinished
-from ulna.serve.contract.model import Name, Said, Sentence, Sha256, Value
+from ulna.serve.contract.model import Name, Said, Sha256
 
 
 class Card(Said):
@@ -16,15 +14,16 @@ class Card(Said):
     maker: str | None
     model: str | None
     serial: str | None
-    state: Literal["in use", "quarantined", "retired"]
+    state: str
+    """in use, quarantined, retired."""
     calibration: Sha256 | None
     """The newest that counts; on the desk by this hash."""
     calibrated_at: str | None
     calibrated_days: int | None
-    u_length: Value | None
+    converged: bool | None
     checked_at: str | None
-    check: Sentence | None
-    """How the last check ended."""
+    check: str | None
+    """Verdict of the last check: the worst of its figures."""
     due_on: str | None
     due_days: int | None
     """Negative: overdue."""

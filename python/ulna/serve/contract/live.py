@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ulna.serve.contract.activities import Activity, Meter, Next, State, Stream, Touch
+from ulna.serve.contract.activities import Activity, Meter, Next, State, Stream, TipNow, Touch
 from ulna.serve.contract.jobs import Job
 from ulna.serve.contract.model import Said, Sentence
 
@@ -66,6 +66,13 @@ class StateEvent(Said):
     state: State
 
 
+class TipEvent(Said):
+    """Where the tip is, ten times a second, of a read-out."""
+
+    event: Literal["tip"] = "tip"
+    tip: TipNow
+
+
 class SaidEvent(Said):
     """A sentence."""
 
@@ -95,6 +102,7 @@ LiveEvent = Annotated[
     | RefusedEvent
     | KnownEvent
     | StateEvent
+    | TipEvent
     | SaidEvent
     | EndedEvent
     | JobEvent,

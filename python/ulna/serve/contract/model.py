@@ -10,7 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field
 class Said(BaseModel):
     """What the server says: numbers are JSON numbers, never NaN or infinity."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, json_schema_mode_override="serialization")
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_mode_override="serialization"
+    )
 
 
 class Asked(BaseModel):

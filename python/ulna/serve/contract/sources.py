@@ -38,15 +38,13 @@ class GuessAsked(Asked):
     seconds: Annotated[float, Field(gt=0.1, le=30.0)] = 3.0
 
 
-class Field_(Said):
-    """One field of a line."""
+class LineField(Said):
+    """One number of a line or a message."""
 
-    index: int
     name: str
-    moves: bool
-    example: str
-    what: str
-    """channel, time, button, or why it is left out."""
+    role: str
+    """channel, clock, button, counter or constant."""
+    why: Sentence
 
 
 class Guessed(Said):
@@ -54,9 +52,11 @@ class Guessed(Said):
 
     lines: list[str]
     """Some, as they came, with what cannot be printed escaped."""
+    kind: str
+    """fields, json, or nothing that is known."""
     sentences: list[Sentence]
     """What it is taken for, and why, as `ulna live guess` says it."""
-    fields: list[Field_]
-    rate_hz: float | None
-    source_toml: str
-    """The source file that it would be."""
+    fields: list[LineField]
+    bytes: int
+    source_toml: str | None
+    """The source file that it would be; None where nothing is proposed."""
