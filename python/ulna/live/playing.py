@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ulna.artefacts.kinds import kind_of
-from ulna.ground.arrays import F64
+from ulna.ground.arrays import F64, Bool
 from ulna.live.guide import Suggestion
 from ulna.live.sources.virtual import VirtualSource
 from ulna.planning.spec import PlanSpec
@@ -17,6 +17,7 @@ from ulna.simulation.mover import Mover
 
 OFF_MM = 3.0
 """How far off an artefact is put, each coordinate: by eye."""
+TRIES = 10
 
 
 class Player:
@@ -35,15 +36,28 @@ class Player:
 
     def follow(self, suggestion: Suggestion) -> bool:
         """Goes there and rests. False where the arm does not reach: nothing is done."""
-        stands_mm = suggestion.stand.points_mm
         at_mm = self._at_mm
-        if not suggestion.here or at_mm is None or len(at_mm) != len(stands_mm):
-            at_mm = stands_mm + self._off_mm * self._rng.standard_normal(3)
+        if not suggestion.here or at_mm is None or len(at_mm) != len(suggestion.stand.points_mm):
+            at_mm = self._put(suggestion.stand.points_mm, suggestion.q_rad)
+        if at_mm is None:
+            return False
         there_mm = at_mm[suggestion.feature] + self._seat_mm * self._rng.standard_normal(3)
-        near, seed = np.ascontiguousarray(suggestion.q_rad[None]), int(self._rng.integers(2**60))
-        q_rad, reached = self._mover.nearby(near, there_mm[None], self._probe, {}, seed)
+        q_rad, reached = self._postures(there_mm[None], suggestion.q_rad)
         if not reached[0]:
             return False
         self._at_mm = at_mm
         self._source.go_to(q_rad[0])
         return True
+
+    def _put(self, stands_mm: F64, near_rad: F64) -> F64 | None:
+        """About there, where all of it is reached; None where that is nowhere."""
+        for _ in range(TRIES):
+            at_mm: F64 = stands_mm + self._off_mm * self._rng.standard_normal(3)
+            if self._postures(at_mm, near_rad)[1].all():
+                return at_mm
+        return None
+
+    def _postures(self, points_mm: F64, near_rad: F64) -> tuple[F64, Bool]:
+        count, seed = len(points_mm), int(self._rng.integers(2**60))
+        near = np.repeat(near_rad[None], count, axis=0)
+        return self._mover.nearby(near, np.ascontiguousarray(points_mm), np.repeat(self._probe, count), {}, seed)

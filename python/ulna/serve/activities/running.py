@@ -186,7 +186,7 @@ class Running:
     def _stream_said(self) -> wire.Stream:
         known = self._round
         return wire.Stream(
-            source=self._stream.stated.url.text,
+            scheme=self._stream.stated.url.scheme,
             device=self._stream.source.hello.device,
             channels=list(self._stream.source.hello.channels),
             rate_hz=round(known.rate_hz, 1),

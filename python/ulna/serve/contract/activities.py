@@ -338,7 +338,8 @@ State = Annotated[WatchState | CommissionState | TouchState | MeasureState, Fiel
 class Stream(Said):
     """A source, now."""
 
-    source: str
+    scheme: str
+    """serial, tcp, virtual, …"""
     device: str
     channels: list[str]
     rate_hz: float
