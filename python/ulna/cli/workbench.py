@@ -57,6 +57,7 @@ def workbench(
             webbrowser.open(address)
 
     serve(folder, port, by, ready)
+    output.say(f"{folder}: ended. A session that was going on goes on from here: ulna workbench {folder}")
 
 
 def _usual() -> Path:
