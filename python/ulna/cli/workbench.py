@@ -42,21 +42,23 @@ def workbench(
     import webbrowser
 
     from ulna.cli import output
+    from ulna.cli.interrupting import asked_to_end
     from ulna.ground.extras import need
     from ulna.serve import page
     from ulna.serve.serving import serve
 
     need("ulna workbench", "fastapi", "uvicorn", "sqlalchemy", "alembic")
     folder = bench or _usual()
-    if not page.there():
-        output.say("This Ulna was built without its page: make page, with Node 20.19 or newer. The API is there.")
 
     def ready(address: str) -> None:
+        if not page.there():
+            output.say("This Ulna was built without its page: make page, with Node 20.19 or newer. The API is there.")
         output.say(f"{folder}: open {address} (Ctrl-C ends it)")
         if open_it and page.there():
             webbrowser.open(address)
 
-    serve(folder, port, by, ready)
+    with asked_to_end():  # the server itself answers Ctrl-C
+        serve(folder, port, by, ready)
     output.say(f"{folder}: ended. A session that was going on goes on from here: ulna workbench {folder}")
 
 
