@@ -44,10 +44,11 @@ def workbench(
     from ulna.cli import output
     from ulna.cli.interrupting import asked_to_end
     from ulna.ground.extras import need
+
+    need("ulna workbench", "fastapi", "uvicorn", "sqlalchemy", "alembic")
     from ulna.serve import page
     from ulna.serve.serving import serve
 
-    need("ulna workbench", "fastapi", "uvicorn", "sqlalchemy", "alembic")
     folder = bench or _usual()
 
     def ready(address: str) -> None:
