@@ -37,9 +37,10 @@ class Desk:
         self._lock = threading.Lock()
         self._kept: dict[str, _Kept] = {}
         for path in sorted(folder.glob("*/*")):
-            self._keep(path)
+            if path.is_file():
+                self._keep(path)
         for path in sorted(sessions.glob("*/**/*")):
-            if path.suffix.lower() in _LOOKED:
+            if path.suffix.lower() in _LOOKED and path.is_file():
                 self._keep(path)
 
     def put(self, name: str, content: bytes) -> FileInfo:

@@ -13,6 +13,8 @@ from collections.abc import Awaitable, Callable, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 
+from starlette.exceptions import HTTPException
+
 from ulna.serve.problems import answer
 
 Scope = MutableMapping[str, Any]
@@ -22,7 +24,9 @@ App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 COOKIE = "ulna-session"
 SESSION_S = 12 * 3600.0
-MOST_BODY = 300 << 20
+MOST_BODY, MOST_WORDS = 300 << 20, 1 << 20
+"""Bytes that are taken: of a file, and of all else, also where nobody said before how many come."""
+FILES = "/api/v1/files"
 SAFE = ("GET", "HEAD", "OPTIONS")
 OPEN = ("/api/v1/login", "/api/v1/about")
 """Of the API what anybody may ask."""
@@ -83,11 +87,10 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         refused = self._refused(scope, headers)
         if refused is None:
-            await self._app(scope, receive, _with_headers(send, scope["path"]))
-        elif scope["type"] == "websocket":
-            await receive()
-            await send({"type": "websocket.close", "code": 4000 + refused[0]})
+            await self._app(scope, _limited(receive, scope), _with_headers(send, scope["path"]))
         else:
+            if scope["type"] == "websocket":
+                await receive()
             await answer(*refused)(scope, receive, _with_headers(send, scope["path"]))
 
     def _refused(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
@@ -97,11 +100,30 @@ class Guard:
         unsafe = scope["type"] == "websocket" or scope["method"] not in SAFE
         if (unsafe or origin is not None) and origin not in {f"{scheme}://{host}" for scheme in ("http", "https")}:
             return 403, f"Origin: got '{(origin or '')[:80]}'; expected this server's own. Use its page."
-        if int(headers.get("content-length", "0") or 0) > MOST_BODY:
-            return 413, f"{headers['content-length']} bytes; expected {MOST_BODY} at most. Cut the file."
+        said = headers.get("content-length", "0")
+        if said.isdigit() and int(said) > _most(path):
+            return 413, f"{said} bytes; expected {_most(path)} at most. Cut it."
         if path.startswith("/api/") and path not in OPEN and not self._guests.known(cookie_of(headers)):
             return 401, "Open the address that `ulna workbench` printed."
         return None
+
+
+def _most(path: str) -> int:
+    return MOST_BODY if path == FILES else MOST_WORDS
+
+
+def _limited(receive: Receive, scope: Scope) -> Receive:
+    most, count = _most(scope["path"]), 0
+
+    async def received() -> MutableMapping[str, Any]:
+        nonlocal count
+        message = await receive()
+        count += len(message.get("body", b"")) if message["type"] == "http.request" else 0
+        if count > most:
+            raise HTTPException(413, f"more than {most} bytes; expected fewer. Cut it.")
+        return message
+
+    return received
 
 
 def cookie_of(headers: MutableMapping[str, str] | Any) -> str | None:

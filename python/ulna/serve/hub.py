@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
 
 from ulna.serve.contract.live import LiveEvent
 
@@ -18,7 +20,8 @@ class Listener:
     def __init__(self, loop: asyncio.AbstractEventLoop, activity: str | None) -> None:
         """activity: of which it gets the frames; None: of none."""
         self.activity = activity
-        self.too_slow = False
+        self.gone = asyncio.Event()
+        """It is too slow, and gets nothing more."""
         self._loop = loop
         self._texts: deque[str] = deque()
         self._frame: bytes | None = None
@@ -43,15 +46,13 @@ class Listener:
         """From any thread."""
         self._soon(lambda: self._take_frame(frame))
 
-    def _soon(self, work: object) -> None:
-        try:
-            self._loop.call_soon_threadsafe(work)  # type: ignore[arg-type]
-        except RuntimeError:  # the loop is closed: nobody listens any more
-            self.too_slow = True
+    def _soon(self, work: Callable[[], None]) -> None:
+        with suppress(RuntimeError):  # the loop is closed: nobody listens any more
+            self._loop.call_soon_threadsafe(work)
 
     def _take(self, text: str) -> None:
         if len(self._texts) >= MOST_WAITING:
-            self.too_slow = True
+            self.gone.set()
         else:
             self._texts.append(text)
         self._wake.set()

@@ -24,26 +24,28 @@ NAMES = ("127.0.0.1", "localhost")
 def serve(folder: Path, port: int | None, by: str | None, ready: Callable[[str], None]) -> None:
     """Until Ctrl-C or SIGTERM. port: None: 8765, or another where that is taken; 0: any. ready: is given the address to open, once
     it answers. Raises UlnaInputError."""
-    listening = _listening(port)
-    own = listening.getsockname()[1]
+    listening = listening_at(port)
     workshop = Workshop(folder, by)
     try:
-        guests = Guests()
-        app = make_app(workshop, guests, frozenset(f"{name}:{own}" for name in NAMES))
-        config = uvicorn.Config(
-            app,
-            log_level="warning",
-            access_log=False,
-            ws="websockets-sansio",
-            ws_max_size=1 << 16,
-            timeout_graceful_shutdown=2,
-            server_header=False,
-            lifespan="off",
-        )
-        server = _Server(config, lambda: ready(f"http://{HOST}:{own}/#token={guests.token}"))
-        server.run(sockets=[listening])
+        server_of(workshop, listening, ready).run(sockets=[listening])
     finally:
         workshop.close()
+
+
+def server_of(workshop: Workshop, listening: socket.socket, ready: Callable[[str], None]) -> uvicorn.Server:
+    """What answers for a bench at an open port; its `run` returns once `should_exit` is set, or at Ctrl-C."""
+    own, guests = listening.getsockname()[1], Guests()
+    config = uvicorn.Config(
+        make_app(workshop, guests, frozenset(f"{name}:{own}" for name in NAMES)),
+        log_level="warning",
+        access_log=False,
+        ws="websockets-sansio",
+        ws_max_size=1 << 16,
+        timeout_graceful_shutdown=2,
+        server_header=False,
+        lifespan="off",
+    )
+    return _Server(config, lambda: ready(f"http://{HOST}:{own}/#token={guests.token}"))
 
 
 class _Server(uvicorn.Server):
@@ -68,7 +70,8 @@ class _Server(uvicorn.Server):
         self._ready()
 
 
-def _listening(port: int | None) -> socket.socket:
+def listening_at(port: int | None) -> socket.socket:
+    """port: as for `serve`. Raises UlnaInputError where it is taken."""
     tried = [USUAL_PORT, 0] if port is None else [port]
     for each in tried:
         made = socket.socket()

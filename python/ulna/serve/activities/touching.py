@@ -53,6 +53,7 @@ class Touching(Doing):
         self._meter: Meter | None = None
         self._told: dict[int, Happened] = {}
         self._player: Player | None = None
+        self._follows = False
         self._covariance: tuple[np.ndarray, F64] | None = None
         self._newest: tuple[float, F64] | None = None
 
@@ -90,10 +91,15 @@ class Touching(Doing):
                 session.trust()
                 yield SaidEvent(sentence="The angles are taken for right again.")
             case DoGo():
-                self._player = None
+                self._follows = False
                 steer(self.virtual, asked.q_deg)
             case DoFollow():
-                self._player = Player(self.virtual, session.spec) if asked.follows else None
+                if asked.follows and self._player is None:
+                    self._player = Player(self.virtual, session.spec)
+                    if session.place:  # where it stood, a hand that comes does not know: it puts it anew
+                        session.moved()
+                        yield self._known()
+                self._follows = asked.follows
                 yield from self._play()
             case _:
                 raise unknown(asked, self.kind)
@@ -160,7 +166,7 @@ class Touching(Doing):
                     yield FaultEvent(kind=event.kind, sentence=event.text)
             case Refused():
                 yield RefusedEvent(sentence=f"Not taken: {event.reason}.")
-                if self._player is not None:
+                if self._follows:
                     yield self._known()
                     yield from self._play()
             case Happened():
@@ -182,7 +188,7 @@ class Touching(Doing):
     def _play(self) -> Iterator[LiveEvent]:
         """The virtual hand goes on, unless there is nothing more to reach."""
         for _ in range(TRIES):
-            if self._player is None or self._meter is None or self._reached():
+            if not self._follows or self._player is None or self._meter is None or self._reached():
                 return
             if self._player.follow(self._meter.next):
                 return

@@ -16,7 +16,9 @@ from ulna.serve.workshop import Workshop
 
 router = APIRouter()
 TOO_SLOW, NOT_THERE = 4008, 4404
-"""Why a socket is closed, beside 4401 and 4403 of the guard."""
+"""Why a socket is closed. The guard refuses before there is one: with 401 and 403, as of any request."""
+CLOSE_S = 1.0
+"""How long one that does not read is told so."""
 
 
 @router.websocket("/live")
@@ -41,21 +43,24 @@ async def live(socket: WebSocket, activity: Annotated[str | None, Query(max_leng
 
 
 async def _both(socket: WebSocket, listener: Listener) -> None:
-    """Until whoever listens goes: what they send is not for this socket and is dropped."""
-    sending, hearing = asyncio.create_task(_send(socket, listener)), asyncio.create_task(_hear(socket))
-    done, rest = await asyncio.wait({sending, hearing}, return_when=asyncio.FIRST_COMPLETED)
+    """Until whoever listens goes, or is too slow: one that does not read is waited for no longer. What they send is not
+    for this socket and is dropped."""
+    tasks = [asyncio.create_task(each) for each in (_send(socket, listener), _hear(socket), listener.gone.wait())]
+    _, rest = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in rest:
         task.cancel()
-    for task in (*done, *rest):
+    for task in tasks:
         with suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
             await task
+    if listener.gone.is_set():
+        with suppress(TimeoutError, WebSocketDisconnect, RuntimeError):
+            await asyncio.wait_for(socket.close(TOO_SLOW), CLOSE_S)
 
 
 async def _send(socket: WebSocket, listener: Listener) -> None:
-    while not listener.too_slow:
+    while True:
         found = await listener.next()
         await (socket.send_text(found) if isinstance(found, str) else socket.send_bytes(found))
-    await socket.close(TOO_SLOW)
 
 
 async def _hear(socket: WebSocket) -> None:
