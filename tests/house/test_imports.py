@@ -36,8 +36,9 @@ FLOORS = {
     "documents": 9,
     "live": 10,
     "records": 10,
-    "cli": 11,
-    "__main__": 12,
+    "serve": 11,
+    "cli": 12,
+    "__main__": 13,
 }
 
 #: rooms of the Rust core, from the ground up: each uses only what stands on floors below its own

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import ulna
-from ulna.cli.printed.touching import happened_lines, meter_lines
 from ulna.live.commission.commissioning import Commissioning
 from ulna.live.commission.geometry import geometry
 from ulna.live.commission.posture import posture
@@ -18,6 +17,7 @@ from ulna.live.commission.writing import write
 from ulna.live.events import Happened
 from ulna.live.faults import Fault
 from ulna.live.purpose import purpose_of
+from ulna.live.said import happened_lines, meter_lines
 from ulna.live.samples import Hello, Samples
 from ulna.live.session import Session
 from ulna.live.source import SourceEnded

@@ -13,9 +13,10 @@ from tests.live.test_session import hand_of, played, session_of
 
 import ulna
 from ulna.artefacts.artefact import Artefact
-from ulna.cli.printed.lacking import LINES, in_words, lacking_lines
-from ulna.cli.printed.touching import held_out_lines, record_of, screen
+from ulna.cli.printed.touching import screen
 from ulna.live.lacking import Lacking, lacking, never
+from ulna.live.lacking_words import LINES, in_words, lacking_lines
+from ulna.live.said import held_out_lines, record_of
 from ulna.live.touches import Touch
 
 

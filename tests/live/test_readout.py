@@ -18,13 +18,13 @@ from ulna import Arm, UlnaInputError
 from ulna.arm.covariance import root_of
 from ulna.arm.effects.effects import Effects
 from ulna.arm.joint import Joint
-from ulna.cli.live.rounds import Round
 from ulna.cli.printed.readout import large, screen, summary
 from ulna.ground.arrays import F64
 from ulna.live.features import Notebook, asked_for
 from ulna.live.figures import Calibrated
 from ulna.live.postures import folded, near_stops
 from ulna.live.readout import ReadOut, Said, Set, Tip
+from ulna.live.rounds import Round
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream, streaming
 from ulna.live.trigger import Refused

@@ -11,12 +11,12 @@ import pytest
 from tests.live.guided_hand import Hand, off_its_drawing, platinum_plan
 
 import ulna
-from ulna.cli.printed.touching import BEGIN_AGAIN, happened_lines
 from ulna.live.ending import JOURNAL, begin, touches_in, write_result, write_study
 from ulna.live.events import Event, Happened
 from ulna.live.faults import JUMP, Fault
 from ulna.live.guide import Guide
 from ulna.live.journal import SAMPLES, Journal, Reading
+from ulna.live.said import BEGIN_AGAIN, happened_lines
 from ulna.live.session import Session
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Stream

@@ -16,6 +16,7 @@ from ulna.cli.help import Command, Group, first_paragraph
 #: command → the module that has it, as a function of the same name
 COMMANDS = {
     "demo": "ulna.cli.demo",
+    "workbench": "ulna.cli.workbench",
     "new": "ulna.cli.new",
     "show": "ulna.cli.show",
     "calibrate": "ulna.cli.calibrate",

@@ -14,6 +14,7 @@ from ulna.records.acts.registry import ACTS
 from ulna.records.acts.standing import WITHDRAWN
 from ulna.records.chain import walk
 from ulna.records.entry import Entry
+from ulna.records.filed.kind import BAD, GOOD, OUT
 from ulna.records.tables import CALIBRATION, FIGURE, PARAMETER, STANDING
 
 PARAMETERS = "parameter"
@@ -236,3 +237,37 @@ def calibrations(connection: Connection, arm: str) -> list[asked.Row]:
         .order_by(CALIBRATION.c.at, CALIBRATION.c.seq)
     )
     return asked.rows(connection, asked_for)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a check or a test ended."""
+
+    at: str
+    sha256: str
+    verdict: str | None
+    """The worst of its figures'; None where none has one."""
+
+
+def last_of(connection: Connection, arm: str, source: str) -> Outcome | None:
+    """The newest that counts."""
+    asked_for = (
+        select(FIGURE.c.at, FIGURE.c.sha256, FIGURE.c.verdict)
+        .where(FIGURE.c.arm == arm, FIGURE.c.source == source, FIGURE.c.sha256.not_in(withdrawn()))
+        .order_by(FIGURE.c.at.desc(), FIGURE.c.seq.desc())
+    )
+    rows = asked.rows(connection, asked_for.limit(1))
+    if not rows:
+        return None
+    at, sha256 = rows[0]["at"], rows[0]["sha256"]
+    own = asked.rows(connection, select(FIGURE.c.verdict).where(FIGURE.c.sha256 == sha256))
+    verdicts = [row["verdict"] for row in own if row["verdict"] is not None]
+    return Outcome(at, sha256, min(verdicts, key=_badness) if verdicts else None)
+
+
+_WORST = (BAD, OUT)
+"""Verdicts, the worst first; others are better."""
+
+
+def _badness(verdict: str) -> int:
+    return _WORST.index(verdict) if verdict in _WORST else len(_WORST) + (verdict == GOOD)

@@ -20,7 +20,7 @@ from ulna.records.due import Due, due, today
 from ulna.records.entry import Entry
 from ulna.records.filed.kind import in_utc
 from ulna.records.filing import Filed, Filing
-from ulna.records.history import Happening, Point, Series, calibrations, figures, history, series
+from ulna.records.history import Happening, Outcome, Point, Series, calibrations, figures, history, last_of, series
 from ulna.records.impact import Impact, impact
 from ulna.records.issuing import Asked, IssuedCertificate, issue
 from ulna.records.migrate import migrate
@@ -81,6 +81,11 @@ class Records(Shown):
         """Of an arm, the earliest first, without those that were withdrawn."""
         with self.bench.reading() as connection:
             return [dict(row) for row in calibrations(connection, asked.equipment(connection, arm)["name"])]
+
+    def last_of(self, arm: str, source: str) -> Outcome | None:
+        """How the newest check or test of an arm ended: the worst of its figures. source: check, verification."""
+        with self.bench.reading() as connection:
+            return last_of(connection, asked.equipment(connection, arm)["name"], source)
 
     def due(self, on: str | None = None) -> list[Due]:
         """What must come back, the soonest first, seen from a day."""

@@ -12,14 +12,15 @@ from contextlib import contextmanager
 from rich.console import RenderableType
 
 from ulna.cli.live.keys import pressed
-from ulna.cli.live.rounds import Round
 from ulna.cli.live.watching import read_on
-from ulna.cli.printed.lacking import lacking_lines
-from ulna.cli.printed.touching import happened_lines, held_out_lines, meter_lines, record_of, screen
+from ulna.cli.printed.touching import screen
 from ulna.ground.errors import UlnaInputError
 from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import ORDINARY, Fault
 from ulna.live.fresh import USUAL
+from ulna.live.lacking_words import lacking_lines
+from ulna.live.rounds import Round
+from ulna.live.said import happened_lines, held_out_lines, meter_lines, record_of
 from ulna.live.session import Session
 from ulna.live.stream import Frames
 from ulna.live.touches import present

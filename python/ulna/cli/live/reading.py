@@ -9,12 +9,12 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ulna.cli.live.rounds import Round
 from ulna.cli.live.watching import FRAMES_HZ, LINES_HZ, go_round
 from ulna.live.faults import ORDINARY
 from ulna.live.features import Feature, Notebook
 from ulna.live.figures import Calibrated
 from ulna.live.readout import ReadOut, Set, Tip
+from ulna.live.rounds import Round
 from ulna.live.stream import Frames
 from ulna.live.trigger import Refused
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from types import TracebackType
 from urllib.parse import quote
 
-from ulna.cli.live.rounds import Round
 from ulna.ground.errors import UlnaInputError
 from ulna.live.faults import Fault
 from ulna.live.journal import Journal
 from ulna.live.relay import Relay
+from ulna.live.rounds import Round
 from ulna.live.samples import Samples
 from ulna.live.stream import Frames
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ulna.cli.interrupting import asked_to_end
-from ulna.cli.live.rounds import Round
+from ulna.live.rounds import Round
 from ulna.live.source import SourceEnded
 from ulna.live.stream import Frames, Stream, streaming
 

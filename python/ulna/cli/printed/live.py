@@ -14,11 +14,11 @@ from ulna.ground.errors import for_people
 from ulna.ground.terminal import plain_table
 
 if TYPE_CHECKING:
-    from ulna.cli.live.rounds import Round
     from ulna.live.guessing import Proposal
     from ulna.live.listening import Heard
     from ulna.live.ports import Port
     from ulna.live.registry import Kind
+    from ulna.live.rounds import Round
 
 RAW_LINES = 8
 

@@ -12,10 +12,10 @@ from ulna.ground.digits import decimals, fixed
 from ulna.ground.errors import for_people
 
 if TYPE_CHECKING:
-    from ulna.cli.live.rounds import Round
     from ulna.live.features import Feature, Point
     from ulna.live.figures import Figure
     from ulna.live.readout import ReadOut, Tip
+    from ulna.live.rounds import Round
 
 KEYS = "space point · n new · k kind · u back · q end"
 TRUST = "t: the angles are right, I looked"

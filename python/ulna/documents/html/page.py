@@ -66,14 +66,14 @@ def render(content: Content, language: str = "en") -> str:
         made=content.provenance,
         policy=POLICY.format(scripts=" ".join(f"'sha256-{digest(script)}'" for script in scripts)),
         style=Markup(asset("style.css") + rules()),
-        sections={key: found for key, found in _sections(content, words).items() if found},
+        sections={key: found for key, found in sections_of(content, words).items() if found},
         set=lambda block: getattr(macros, macro_of(block))(block),
         plots_data=lambda: Markup(json_in_script([_data(plot) for plot in drawn])),
         scripts=[Markup(script) for script in scripts],
     )
 
 
-def _sections(content: Content, words: Words) -> Mapping[str, Blocks]:
+def sections_of(content: Content, words: Words) -> Mapping[str, Blocks]:
     """Section by section, in their order; those without a block are left out."""
     found = content.verification
     over = {cause: plots.clouds(content, words, *causes) for cause, causes in _CAUSES.items()}

@@ -131,6 +131,11 @@ class Commissioning:
             return Step(kind, joint, said)
         return Step(kind, joint, f"Turn only joint {joint + 1} {self._ways[joint]}, by some 30°, and leave it there.")
 
+    @property
+    def left(self) -> int:
+        """Steps that are not done."""
+        return len(self._steps)
+
     def take(self, samples: Samples) -> Found | None:
         """What came; what was found where the step is done by that. More is not looked at until somebody has said what
         becomes of it."""

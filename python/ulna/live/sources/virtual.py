@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
@@ -74,7 +75,8 @@ class VirtualSource:
         self._wanders, self._told = wanders, SimpleQueue[F64]()
         self._poses: deque[F64] | None = None if poses_rad is None else deque(poses_rad)
         travel = np.array([joint.travel_rad or UNSAID_RAD for joint in arm.joints])
-        self._travel_rad = travel
+        self.travel_rad: F64 = travel
+        """(n, 2) how far its joints turn."""
         first = travel.mean(axis=1) if self._poses is None else self._poses.popleft()
         self._hand = Hand(first, self._next, hand_rad_s, rest_s, chances, seed)
         self._began_s: float | None = None
@@ -92,6 +94,14 @@ class VirtualSource:
         if there.shape != (self.arm.n,) or not np.isfinite(there).all():
             raise ValueError(f"q_rad: expected ({self.arm.n},) encoder angles in rad, got {there.tolist()}")
         self._told.put(there)
+
+    def steer(self, q_rad: ArrayLike) -> None:
+        """The same, in place of all that was asked for and not begun: a slider that is being moved. Raises
+        ValueError."""
+        with suppress(Empty):
+            while True:
+                self._told.get_nowait()
+        self.go_to(q_rad)
 
     @property
     def here_rad(self) -> F64:
@@ -112,7 +122,8 @@ class VirtualSource:
             raise StopIteration
         if not self._wanders:
             return None
-        anywhere: F64 = self._rng.uniform(*self._travel_rad.T)
+        low, high = self.travel_rad.T
+        anywhere: F64 = self._rng.uniform(low, high)
         return anywhere
 
     def read(self, timeout_s: float) -> Samples:

@@ -31,7 +31,7 @@ def lacking_lines(found: Lacking, columns: int = 80, most: int = LINES) -> list[
     return lines
 
 
-def names(directions: Sequence[Direction]) -> str:
+def named_of(directions: Sequence[Direction]) -> str:
     """Those parameters that take the largest steps, "zero of joint 6 with x of probe bent and 3 more"."""
     largest: dict[str, float] = {}
     for direction in directions:
@@ -64,12 +64,12 @@ def _sentences(found: Lacking) -> Iterator[str]:
         ("Not known yet", found.not_yet),
         ("Hardly known", found.weak),
     ):
-        for because, remedy, own in _together(directions):
+        for because, remedy, own in together(directions):
             count = f" ({len(own)} combinations)" if len(own) > 1 else ""
-            yield f"{head}{count}: {names(own)}: {because}. {sentence(remedy[:1].upper() + remedy[1:])}"
+            yield f"{head}{count}: {named_of(own)}: {because}. {sentence(remedy[:1].upper() + remedy[1:])}"
 
 
-def _together(directions: Sequence[Direction]) -> Iterator[tuple[str, str, list[Direction]]]:
+def together(directions: Sequence[Direction]) -> Iterator[tuple[str, str, list[Direction]]]:
     """Those with the same cause and remedy, once."""
     groups: dict[tuple[str, str], list[Direction]] = {}
     for direction in directions:

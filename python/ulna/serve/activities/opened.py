@@ -1,0 +1,31 @@
+"""A source as a client names it, opened: by its URL, or by a file of the desk. No path of a client is opened."""
+
+from __future__ import annotations
+
+from urllib.parse import quote
+
+from ulna.ground.errors import UlnaInputError
+from ulna.live.registry import KINDS
+from ulna.live.source_file import StatedSource, read_source
+from ulna.serve.desk import Desk
+
+OF_FILES = ("file", "bag", "virtual")
+"""Schemes whose URL begins with a path: here with the SHA-256 of a file of the desk."""
+
+
+def stated_source(desk: Desk, given: str) -> StatedSource:
+    """A URL, or the SHA-256 of a source file or a recording. Raises UlnaInputError."""
+    scheme, colon, rest = given.partition(":")
+    if not colon:
+        path = desk.path(given)
+        return read_source(path)
+    if scheme.lower() not in OF_FILES:
+        if scheme.lower() not in KINDS:
+            known = ", ".join(KINDS)
+            raise UlnaInputError(f"source '{given[:80]}': got '{scheme[:20]}:'; expected one of {known}. Correct it.")
+        return read_source(given)
+    name, question, options = rest.partition("?")
+    if options and "poses=" in options:
+        raise UlnaInputError(f"source '{given[:80]}': poses are files; expected none here. Leave them out.")
+    path = desk.path(name)
+    return read_source(f"{scheme}:{quote(str(path))}{question}{options}")

@@ -1,0 +1,75 @@
+"""An arm as it is drawn: where its bodies and its tip are in a posture, and how sure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ulna.arm.arm import Arm
+from ulna.arm.frames.bodies import bodies
+from ulna.ground.arrays import F64
+from ulna.live.postures import near_stops
+from ulna.serve.contract.arms import Bodies
+from ulna.serve.frames import Flag, Newest
+
+Covariance = Callable[[F64], F64 | None]
+"""(n,) angles → (6,) covariance of the tip, mm²; None where none is known."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """How one is drawn."""
+
+    arm: Arm | None
+    probe: int = 0
+    covariance: Covariance = field(default=lambda q_rad: None)
+
+    @classmethod
+    def nothing(cls, joints: int) -> Seen:
+        """Of a stream of which nobody knows the arm."""
+        return cls(None)
+
+    def newest(self, t_s: float, q_rad: F64, doubtful: bool, rests: float = 0.0) -> Newest:
+        """What is packed."""
+        flags = Flag.DOUBTFUL if doubtful else Flag(0)
+        if rests >= 1.0:
+            flags |= Flag.STILL
+        if self.arm is None or len(q_rad) != self.arm.n:
+            return Newest(t_s, q_rad, np.zeros(3), np.zeros(6), rests, np.zeros((len(q_rad) + 1, 3, 4)), flags)
+        flags |= Flag.ARM
+        if near_stops(self.arm, q_rad):
+            flags |= Flag.AT_STOP
+        covariance = self.covariance(q_rad)
+        if covariance is None:
+            flags |= Flag.NOT_DETERMINED
+            covariance = np.zeros(6)
+        tip_mm = self.arm.core.tip(np.ascontiguousarray(q_rad[None]), self.probe)[0]
+        stand = np.array(bodies(self.arm, q_rad))[:, :3, :]
+        return Newest(t_s, q_rad, tip_mm, covariance, rests, stand, flags)
+
+
+def seen(arm: Arm, probe: str | None = None, covariance: Covariance = lambda q_rad: None) -> Seen:
+    """Of an arm with one of its probes on. Raises UlnaInputError for a probe that it has not."""
+    return Seen(arm, 0 if probe is None else arm.probe_index(probe), covariance)
+
+
+def bodies_of(arm: Arm, q_rad: F64, probe: int = 0) -> Bodies:
+    """The same as JSON has it."""
+    stand = np.array(bodies(arm, q_rad))[:, :3, :].reshape(-1, 12)
+    x, y, z = arm.core.tip(np.ascontiguousarray(q_rad[None]), probe)[0].tolist()
+    return Bodies(bodies=stand.tolist(), tip_mm=(x, y, z))
+
+
+def in_degrees(arm: Arm, q_rad: F64) -> list[float]:
+    """Angles as people read them; joints that slide stay in mm."""
+    shown: list[float] = np.where(arm.slides, q_rad, np.degrees(q_rad)).tolist()
+    return shown
+
+
+def from_degrees(arm: Arm, q_deg: list[float]) -> F64:
+    """The other way."""
+    given = np.array(q_deg, dtype=np.float64)
+    found: F64 = np.where(arm.slides, given, np.radians(given))
+    return found

@@ -1,0 +1,1 @@
+"""What goes over the wire, as models: OpenAPI and the page's TypeScript are made from them."""

@@ -1,0 +1,116 @@
+"""The desk: files of the bench folder by the hash of what is in them. No path of a client is ever opened."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from pathlib import Path
+
+from ulna.formats.output import write_file
+from ulna.ground.errors import UlnaInputError
+from ulna.serve.contract.files import FileInfo, FileKind
+from ulna.serve.problems import NotThereError
+from ulna.serve.what import what_is
+
+MOST_BYTES = 256 << 20
+LONGEST = 120
+_LOOKED = {".toml", ".json"}
+"""Of a session's folder: its other files are asked for through these."""
+
+
+@dataclass(frozen=True)
+class _Kept:
+    path: Path
+    info: FileInfo
+
+
+class Desk:
+    """Files that were brought, and those that sessions left.
+
+    folder: what is brought goes to FOLDER/SHA-256/NAME. sessions: a folder each, looked through for what they left.
+    """
+
+    def __init__(self, folder: Path, sessions: Path) -> None:
+        self._folder, self._sessions = folder, sessions
+        self._lock = threading.Lock()
+        self._kept: dict[str, _Kept] = {}
+        for path in sorted(folder.glob("*/*")):
+            self._keep(path)
+        for path in sorted(sessions.glob("*/**/*")):
+            if path.suffix.lower() in _LOOKED:
+                self._keep(path)
+
+    def put(self, name: str, content: bytes) -> FileInfo:
+        """A file that was brought; the same content is there once. Raises UlnaInputError."""
+        if len(content) > MOST_BYTES:
+            raise UlnaInputError(f"{name[:80]}: {len(content)} bytes; expected {MOST_BYTES} at most. Cut it.")
+        digest = sha256(content).hexdigest()
+        with self._lock:
+            known = self._kept.get(digest)
+        if known is not None and known.path.exists():
+            return known.info
+        folder = self._folder / digest
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / plain_name(name)
+        write_file(path, content, force=True)
+        return self._keep(path)
+
+    def take(self, path: Path) -> FileInfo:
+        """A file of a session's folder, as it is now. Raises UlnaInputError where it is not there."""
+        if not path.is_file():
+            raise UlnaInputError(f"{path.name}: it is not there; expected a file that was just written. Look for it.")
+        return self._keep(path)
+
+    def path(self, digest: str) -> Path:
+        """Where a file is. Raises NotThereError, also where somebody changed it meanwhile."""
+        with self._lock:
+            kept = self._kept.get(digest)
+        if kept is None or not kept.path.is_file():
+            raise NotThereError(f"file {digest[:12]}…: it is not on this desk. Bring it once more.")
+        if kept.info.size != kept.path.stat().st_size or _digest(kept.path) != digest:
+            raise NotThereError(f"{kept.info.name}: it was changed since it came. Bring it once more.")
+        return kept.path
+
+    def info(self, digest: str) -> FileInfo:
+        """What is known of it. Raises NotThereError."""
+        self.path(digest)
+        with self._lock:
+            return self._kept[digest].info
+
+    def all(self, *kinds: FileKind) -> list[FileInfo]:
+        """The newest first; kinds: only those."""
+        with self._lock:
+            found = [kept.info for kept in self._kept.values() if not kinds or kept.info.kind in kinds]
+        return sorted(found, key=lambda info: info.at, reverse=True)
+
+    def _keep(self, path: Path) -> FileInfo:
+        digest, stat = _digest(path), path.stat()
+        kind, what = what_is(path)
+        at = datetime.fromtimestamp(stat.st_mtime, UTC).isoformat(timespec="seconds")
+        info = FileInfo(sha256=digest, name=path.name, size=stat.st_size, kind=kind, what=what[:4000], at=at)
+        with self._lock:
+            self._kept.setdefault(digest, _Kept(path, info))
+            if not self._kept[digest].path.exists():
+                self._kept[digest] = _Kept(path, info)
+            return self._kept[digest].info
+
+
+def plain_name(name: str) -> str:
+    """A file's name and nothing else: no folder, no control characters, not hidden, not too long."""
+    last = name.replace("\\", "/").rsplit("/", 1)[-1]
+    kept = "".join(c if c.isprintable() else "_" for c in last).lstrip(". ").rstrip()
+    stem, dot, suffix = kept.rpartition(".")
+    while len(kept.encode()) > LONGEST:
+        stem = stem[:-1]
+        kept = f"{stem}{dot}{suffix}" if stem else kept[: LONGEST // 4]
+    return kept or "file"
+
+
+def _digest(path: Path) -> str:
+    found = sha256()
+    with path.open("rb") as stream:
+        while piece := stream.read(1 << 20):
+            found.update(piece)
+    return found.hexdigest()

@@ -1,0 +1,1 @@
+"""One file a resource: what is asked, handed on to who knows it."""

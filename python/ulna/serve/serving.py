@@ -1,0 +1,75 @@
+"""A server that runs: on this machine alone, until it is ended."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+
+from ulna.ground.errors import UlnaInputError
+from ulna.serve.app import make_app
+from ulna.serve.guarding import Guests
+from ulna.serve.workshop import Workshop
+
+HOST = "127.0.0.1"
+USUAL_PORT = 8765
+NAMES = ("127.0.0.1", "localhost")
+"""Of this machine, as a browser on it may say it."""
+
+
+def serve(folder: Path, port: int | None, by: str | None, ready: Callable[[str], None]) -> None:
+    """Until Ctrl-C. port: None: 8765, or another where that is taken; 0: any. ready: is given the address to open, once
+    it answers. Raises UlnaInputError."""
+    listening = _listening(port)
+    own = listening.getsockname()[1]
+    workshop = Workshop(folder, by)
+    try:
+        guests = Guests()
+        app = make_app(workshop, guests, frozenset(f"{name}:{own}" for name in NAMES))
+        config = uvicorn.Config(
+            app,
+            log_level="warning",
+            access_log=False,
+            ws="websockets-sansio",
+            ws_max_size=1 << 16,
+            timeout_graceful_shutdown=2,
+            server_header=False,
+            lifespan="off",
+        )
+        server = _Server(config, lambda: ready(f"http://{HOST}:{own}/#token={guests.token}"))
+        server.run(sockets=[listening])
+    finally:
+        workshop.close()
+
+
+class _Server(uvicorn.Server):
+    """One that says when it is there."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._ready = ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self._ready()
+
+
+def _listening(port: int | None) -> socket.socket:
+    tried = [USUAL_PORT, 0] if port is None else [port]
+    for each in tried:
+        made = socket.socket()
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            made.bind((HOST, each))
+            made.listen(64)
+        except OSError as error:
+            made.close()
+            if each == tried[-1]:
+                raise UlnaInputError(
+                    f"option --port: {each} cannot be listened at ({error.strerror}). Name another, or 0 for any."
+                ) from None
+        else:
+            return made
+    raise AssertionError(tried)
