@@ -19,6 +19,7 @@ export async function enter(): Promise<void> {
 		}
 		[bench.me, bench.about] = await Promise.all([me(), about()]);
 		await Promise.all([desk.look(), bench.find()]);
+		if (!desk.arm && bench.activity?.arm) desk.chooseArm(bench.activity.arm);
 		bench.door = "open";
 	} catch (error) {
 		if (!(error instanceof Refusal)) throw error;

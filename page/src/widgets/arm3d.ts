@@ -200,7 +200,8 @@ export class Arm3d {
 				? (2 * Math.atan(Math.tan((16 * Math.PI) / 180) * (height / width)) * 180) / Math.PI
 				: 32;
 		this.camera.updateProjectionMatrix();
-		this.later();
+		// another size empties the picture: it is painted before anybody sees that
+		this.renderer.render(this.scene, this.camera);
 	}
 
 	private solid(colour: string): Material {
