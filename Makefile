@@ -17,7 +17,7 @@ help: ## list these targets
 # ---------------------------------------------------------------- build
 
 .PHONY: build
-build: $(VENV)/.built ## make .venv with the package (release mode) and .venv/bin/ulna
+build: $(VENV)/.built page ## make .venv with the package (release mode), .venv/bin/ulna and the page of ulna workbench
 
 # Every package comes from the lock file and must have the hash written there.
 $(VENV)/.locked: requirements-dev.lock
@@ -31,6 +31,20 @@ $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 	@$(STEP) "Compiling the core in release mode (two to five minutes the first time, then what changed)" \
 		'PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .'
 	@touch $@
+
+PAGE := python/ulna/serve/page/.built
+PAGE_SOURCES := $(shell find page -path page/node_modules -prune -o -type f -print)
+
+.PHONY: page
+page: $(PAGE) ## build the page of ulna workbench (needs Node)
+
+$(PAGE): $(PAGE_SOURCES) tools/page.sh
+	@$(STEP) "Building the page of ulna workbench (a minute the first time)" "tools/page.sh build"
+	@mkdir -p $(@D) && touch $@
+
+.PHONY: workbench
+workbench: build ## open the workbench in your browser, with a bench folder in out/bench
+	$(BIN)/ulna workbench out/bench
 
 .PHONY: demo
 demo: build ## calibrate the shipped example, the virtual Platinum with its bent probe; result in out/demo
@@ -51,7 +65,7 @@ wheel: build ## build the wheel, examples and all, into target/wheels/
 .PHONY: test
 test: prerequisites ## the suite: Rust, Python, lint, types, docs; `make test-long` has the rest
 	@$(MAKE) --jobs=2 --output-sync=target build rust-test # one core is enough for linking
-	@$(MAKE) --jobs=2 --output-sync=target lint types docs # each is one process
+	@$(MAKE) --jobs=2 --output-sync=target lint types docs page-test # each is one process
 	@$(MAKE) python-test
 
 .PHONY: prerequisites
@@ -79,6 +93,10 @@ types: build ## mypy --strict
 rust-test: ## tests of the core, and its documentation with warnings as errors
 	cargo test --locked --profile checked --package ulna
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --workspace --quiet
+
+.PHONY: page-test
+page-test: page ## types, lint and tests of the page's own sources
+	tools/page.sh check
 
 .PHONY: python-test
 python-test: build ## tests through the public door
@@ -127,17 +145,19 @@ docs-output: build ## run what the docs show and write its output into docs/
 	$(BIN)/python tools/docs_evening.py # five minutes, as long as the hand takes
 
 .PHONY: schemas
-schemas: build ## write the JSON Schemas of all formats anew, from the models that read and write them
+schemas: build ## write the JSON Schemas of all formats anew, and the page's contract, from the models they are made of
 	$(BIN)/python tools/schemas.py
+	$(BIN)/python tools/openapi.py
+	cd page && npm run --silent contract
 
 .PHONY: lock
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
 	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }
 	UV_CUSTOM_COMPILE_COMMAND="make lock" uv pip compile --quiet --upgrade --universal --python-version 3.11 \
-		--generate-hashes --group dev --extra reports --extra tables --extra search --extra judge --extra records --extra mqtt --extra ros --extra opcua pyproject.toml --output-file requirements-dev.lock
+		--generate-hashes --group dev --extra reports --extra tables --extra search --extra judge --extra workbench --extra mqtt --extra ros --extra opcua pyproject.toml --output-file requirements-dev.lock
 
 .PHONY: clean
 clean: ## remove everything that was built
-	rm -rf $(VENV) target site out python/ulna/examples .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) target site out python/ulna/examples python/ulna/serve/page page/node_modules .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find python tests examples benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 	find python -name '*.so' -delete

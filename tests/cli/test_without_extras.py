@@ -101,6 +101,7 @@ def test_what_needs_more_says_which_extra(result: Path, tmp_path: Path) -> None:
         ("tables", ["measure", tmp_path / "arm.toml", EXAMPLES / "bars.csv", "-o", tmp_path / "out.parquet"]),
         ("records", ["record", "init", out]),
         ("records", ["calibrate", EXAMPLES / "study.toml", "-o", out, "--record", "P7"]),
+        ("workbench", ["workbench", out, "--no-open"]),
         ("mqtt", ["live", "watch", "mqtt://host/topic"]),
         ("ros", ["live", "watch", "bag:run.mcap"]),
         ("opcua", ["live", "watch", "opc.tcp://host:4840"]),
@@ -133,7 +134,7 @@ def test_no_module_but_those_that_draw_or_keep_records_needs_an_extra() -> None:
     needy = dict(line.split() for line in done.stdout.splitlines())
     draws = re.compile(
         r"ulna\.ground\.style|ulna\.[\w.]+\.plots?|ulna\.documents\.(pdf|drawn|work_sheet)(\.\w+)?|ulna\.documents\.plotted|"
-        r"ulna\.formats\.tables\.(arrow|hdf5_apart)|ulna\.records(\.\w+)*|ulna\.cli\.printed\.(records|trends)"
+        r"ulna\.formats\.tables\.(arrow|hdf5_apart)|ulna\.(records|serve)(\.\w+)*|ulna\.cli\.printed\.(records|trends)"
     )
     assert [name for name in needy if not draws.fullmatch(name)] == []
     assert {package.split(".")[0] for package in needy.values()} <= {

@@ -84,10 +84,12 @@ def test_where_rate_and_noise_do_not_tell_it_is_said() -> None:
     assert StillLimits.of(0.0, 20.0, SEAT_MM).sees
 
 
-def test_an_arm_is_taken_again_after_it_has_been_away() -> None:
+@pytest.mark.parametrize(("armed", "touches"), [(True, 2), (False, 1)])
+def test_an_arm_is_taken_again_after_it_has_been_away(armed: bool, touches: int) -> None:
+    """And not where it lies when somebody begins, unless that is asked for."""
     limits = StillLimits.of(0.006, 1000.0, SEAT_MM)
     rng = np.random.default_rng(3)
-    trigger, taken = Trigger(limits), []
+    trigger, taken = Trigger(limits, armed=armed), []
     t_s = np.arange(6000) / 1000.0
     way = np.zeros((6000, 3))
     way[2000:4000, 0] = 1.0  # not far enough
@@ -97,9 +99,9 @@ def test_an_arm_is_taken_again_after_it_has_been_away() -> None:
         window = slice(max(0, end - 510), end)
         if trigger.look(t_s[window], p_mm[window], p_mm[window], 0.006**2 * np.eye(3)) is not None:
             taken.append(t_s[end - 1])
-    assert len(taken) == 2
-    assert taken[0] < 0.6
-    assert 4.4 < taken[1] < 4.7
+    assert len(taken) == touches
+    assert 4.4 < taken[-1] < 4.7
+    assert all(each < 0.6 for each in taken[:-1])
 
 
 def test_drift_and_spread_are_those_of_the_window() -> None:

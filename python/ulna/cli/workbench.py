@@ -46,7 +46,7 @@ def workbench(
     from ulna.serve import page
     from ulna.serve.serving import serve
 
-    need("ulna workbench", "sqlalchemy", "alembic", "fastapi", "uvicorn")
+    need("ulna workbench", "fastapi", "uvicorn", "sqlalchemy", "alembic")
     folder = bench or _usual()
     if not page.there():
         output.say("This Ulna was built without its page: make page, with Node 20.19 or newer. The API is there.")
@@ -57,6 +57,7 @@ def workbench(
             webbrowser.open(address)
 
     serve(folder, port, by, ready)
+    output.say(f"{folder}: ended. A session that was going on goes on from here: ulna workbench {folder}")
 
 
 def _usual() -> Path:

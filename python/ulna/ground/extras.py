@@ -17,6 +17,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "judge": ("sklearn",),
     "dask": ("distributed",),
     "records": ("sqlalchemy", "alembic", "pg8000"),
+    "workbench": ("fastapi", "uvicorn"),
     "mqtt": ("paho",),
     "ros": ("mcap", "mcap_ros2", "rosbags"),
     "opcua": ("asyncua",),

@@ -35,9 +35,12 @@ class Rests:
         seat_mm: float,
         stops_rad: F64 | None,
         by_itself: bool,
+        from_the_first: bool = True,
     ) -> None:
+        """from_the_first: whether a rest in which the stream begins is a touch too."""
         self._stream, self._tips_mm, self._covariance_mm2 = stream, tips_mm, covariance_mm2
         self._seat_mm, self._stops_rad, self._by_itself = seat_mm, stops_rad, by_itself
+        self._from_the_first = from_the_first
         self._early: list[tuple[Samples, F64]] = []
         """What came before the rate was known."""
         self._recent: Recent | None = None
@@ -118,7 +121,7 @@ class Rests:
         noise_mm = math.sqrt(max(float(np.trace(self._covariance_mm2(q_rad))) / 3.0, 0.0))
         limits = StillLimits.of(noise_mm, rate_hz, self._seat_mm)
         limits = limits.stated_by(self._stream.stated.file.still, rate_hz)
-        self._trigger = Trigger(limits, self._stops_rad, self._by_itself)
+        self._trigger = Trigger(limits, self._stops_rad, self._by_itself, armed=self._from_the_first)
         return Recent(len(q_rad), limits.window_s + 2.0 / rate_hz)
 
     def _places(self, window: Window) -> tuple[F64, F64, F64, F64]:

@@ -95,7 +95,9 @@ class Session:
         self._ring = Ring(len(stream.source.hello.channels), 1 << 15)
         self._sample_rad = spec.encoder_rad if stream.sample_rad is None else stream.sample_rad
         stream.mapping.begin_within(travel_of(arm))
-        self._rests = Rests(stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself)
+        self._rests = Rests(
+            stream, self._tips_mm, self._covariance_mm2, spec.seat_mm, travel_of(arm), by_itself, from_the_first=False
+        )
         self.fresh_places = 0
         """Fresh places that are asked for: touches are held out; 0: they are fitted."""
         self.no_fit: str | None = None

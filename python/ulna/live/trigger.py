@@ -44,16 +44,17 @@ class Trigger:
     by_itself: bool = True
     """Whether a rest is a touch without being asked for."""
     last_mm: F64 | None = None
-    """(3,) where the tip was at the last touch, or when the stream began: there is none before it has been away. An arm
-    that lies there when somebody begins touches nothing."""
-    armed: bool = field(default=False)
+    """(3,) where the tip was at the last touch, or when the stream began: there is none before it has been away."""
+    armed: bool = field(default=True)
+    """Whether the next rest is taken. False at the beginning: an arm that lies there when somebody begins touches
+    nothing."""
 
     def look(self, t_s: F64, q_rad: F64, p_mm: F64, covariance_mm2: F64) -> Taken | Refused | None:
         """The newest samples of a stream, (N,), (N, n), (N, 3): a touch, why there is none though the tip rests, or
         nothing yet. covariance_mm2: (3, 3) of one sample's tip."""
-        if self.last_mm is None:
-            self.last_mm = p_mm[0]
         if not self.armed:
+            if self.last_mm is None:
+                self.last_mm = p_mm[0]
             self.armed = bool(np.linalg.norm(p_mm[-1] - self.last_mm) > self.limits.rearm_mm)
         if not (self.by_itself and self.armed):
             return None

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import uvicorn
@@ -20,7 +22,7 @@ NAMES = ("127.0.0.1", "localhost")
 
 
 def serve(folder: Path, port: int | None, by: str | None, ready: Callable[[str], None]) -> None:
-    """Until Ctrl-C. port: None: 8765, or another where that is taken; 0: any. ready: is given the address to open, once
+    """Until Ctrl-C or SIGTERM. port: None: 8765, or another where that is taken; 0: any. ready: is given the address to open, once
     it answers. Raises UlnaInputError."""
     listening = _listening(port)
     own = listening.getsockname()[1]
@@ -50,6 +52,16 @@ class _Server(uvicorn.Server):
     def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
         super().__init__(config)
         self._ready = ready
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Ctrl-C, or being asked to end, is how it ends; nothing is raised anew."""
+        before = {number: signal.signal(number, self.handle_exit) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
