@@ -22,6 +22,13 @@ export const SCREENS: readonly ScreenRow[] = [
 	},
 	{ path: "/arm", title: "screen.arm", icon: "arm", first: true, load: () => import("./screens/Arm.svelte") },
 	{
+		path: "/file",
+		title: "screen.file",
+		icon: "file",
+		first: false,
+		load: () => import("./screens/File.svelte"),
+	},
+	{
 		path: "/goal",
 		title: "screen.goal",
 		icon: "goal",
