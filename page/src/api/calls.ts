@@ -1,0 +1,77 @@
+/** What the page asks of the server: one function for each path that it uses, typed by the contract. */
+import createClient from "openapi-fetch";
+import type { Language } from "../words/words.svelte";
+import { detailOf, Refusal, SILENT } from "./refusal";
+import type { paths } from "./schema";
+import type * as Say from "./types";
+
+const client = createClient<paths>({ baseUrl: "" });
+
+/** As `openapi-fetch` has it: of tuples it only knows that they are arrays. */
+type Loose<T> = T extends readonly (infer E)[]
+	? Loose<E>[]
+	: T extends object
+		? { [K in keyof T]: Loose<T[K]> }
+		: T;
+interface Answered<T> {
+	data?: T;
+	error?: unknown;
+	response: Response;
+}
+
+/** What was answered; a no as `Refusal`, and silence too. */
+async function got<T>(asked: Promise<Answered<Loose<T>>>): Promise<T> {
+	let answered: Answered<Loose<T>>;
+	try {
+		answered = await asked;
+	} catch {
+		throw new Refusal(SILENT, "");
+	}
+	const { data, error, response } = answered;
+	if (!response.ok) throw new Refusal(response.status, detailOf(error, response.status));
+	return data as T;
+}
+
+export const about = () => got<Say.About>(client.GET("/api/v1/about"));
+export const me = () => got<Say.Me>(client.GET("/api/v1/me"));
+export const login = (token: string) => got<Say.Me>(client.POST("/api/v1/login", { body: { token } }));
+export const benchInfo = () => got<Say.BenchInfo>(client.GET("/api/v1/bench"));
+export const play = () => got<Say.Play>(client.POST("/api/v1/play"));
+export const arms = () => got<Say.Arms>(client.GET("/api/v1/arms"));
+export const arm = (sha256: string) =>
+	got<Say.ArmWhole>(client.GET("/api/v1/arms/{sha256}", { params: { path: { sha256 } } }));
+export const files = (kind?: Say.FileKind) =>
+	got<Say.Files>(client.GET("/api/v1/files", { params: { query: kind === undefined ? {} : { kind } } }));
+export const ports = () => got<Say.Ports>(client.GET("/api/v1/sources/ports"));
+export const guess = (source: string, seconds: number) =>
+	got<Say.Guessed>(client.POST("/api/v1/sources/guess", { body: { source, seconds } }));
+export const activities = () => got<Say.Activities>(client.GET("/api/v1/activities"));
+export const activity = (name: string) =>
+	got<Say.Activity>(client.GET("/api/v1/activities/{name}", { params: { path: { name } } }));
+export const begin = (body: Say.Begin) => got<Say.Activity>(client.POST("/api/v1/activities", { body }));
+export const say = (name: string, body: Say.Do) =>
+	got<Say.Activity>(client.POST("/api/v1/activities/{name}/do", { params: { path: { name } }, body }));
+export const jobs = () => got<Say.Jobs>(client.GET("/api/v1/jobs"));
+export const beginJob = (body: Say.BeginJob) => got<Say.Job>(client.POST("/api/v1/jobs", { body }));
+export const cancelJob = (name: string) =>
+	got<Say.Job>(client.POST("/api/v1/jobs/{name}/cancel", { params: { path: { name } } }));
+export const result = (sha256: string, language: Language) =>
+	got<Say.ResultWhole>(
+		client.GET("/api/v1/results/{sha256}", { params: { path: { sha256 }, query: { language } } }),
+	);
+
+/** A file by its bytes; its name goes beside them. */
+export const bring = (file: Blob, name: string) =>
+	got<Say.FileInfo>(
+		client.POST("/api/v1/files", {
+			params: { query: { name } },
+			body: "",
+			bodySerializer: () => file,
+			headers: { "Content-Type": "application/octet-stream" },
+		}),
+	);
+
+/** To be saved, never shown. */
+export const contentUrl = (sha256: string) => `/api/v1/files/${sha256}/content`;
+/** To be shown in a frame of its own. */
+export const reportUrl = (sha256: string) => `/api/v1/files/${sha256}/report`;

@@ -1,0 +1,2 @@
+/** By what a touch is taken. */
+export type By = "still" | "button" | "key";

@@ -1,0 +1,63 @@
+/** The screens in the order in which they are used. A new one is a file and a row. */
+import type { Component } from "svelte";
+import type { IconName } from "./widgets/icons";
+import type { WordKey } from "./words/words.svelte";
+
+export interface ScreenRow {
+	path: string;
+	title: WordKey;
+	icon: IconName;
+	/** Whether it stands in the bottom bar of a small screen; the others are behind "more". */
+	first: boolean;
+	load: () => Promise<{ default: Component }>;
+}
+
+export const SCREENS: readonly ScreenRow[] = [
+	{
+		path: "/",
+		title: "screen.bench",
+		icon: "bench",
+		first: true,
+		load: () => import("./screens/Bench.svelte"),
+	},
+	{ path: "/arm", title: "screen.arm", icon: "arm", first: true, load: () => import("./screens/Arm.svelte") },
+	{
+		path: "/file",
+		title: "screen.file",
+		icon: "file",
+		first: false,
+		load: () => import("./screens/File.svelte"),
+	},
+	{
+		path: "/goal",
+		title: "screen.goal",
+		icon: "goal",
+		first: false,
+		load: () => import("./screens/Goal.svelte"),
+	},
+	{
+		path: "/collect",
+		title: "screen.collect",
+		icon: "collect",
+		first: true,
+		load: () => import("./screens/Collect.svelte"),
+	},
+	{
+		path: "/results",
+		title: "screen.results",
+		icon: "results",
+		first: true,
+		load: () => import("./screens/Results.svelte"),
+	},
+	{
+		path: "/read-out",
+		title: "screen.read-out",
+		icon: "readout",
+		first: false,
+		load: () => import("./screens/ReadOut.svelte"),
+	},
+];
+
+export function screenOf(path: string): ScreenRow | undefined {
+	return SCREENS.find((each) => each.path === path);
+}

@@ -1,0 +1,6 @@
+export interface Column {
+	key: string;
+	title: string;
+	/** Right-aligned, never broken. */
+	number?: boolean;
+}

@@ -1,0 +1,30 @@
+/** Drawn on 24 × 24, by strokes. */
+export const ICONS = {
+	bench: "M3 10h18M5 10v9M19 10v9M9 10V6h6v4",
+	arm: "M5 20h6M8 20v-7l6-6 5 5M8 13.2a1.6 1.6 0 1 0 0-.1M14 7.2a1.6 1.6 0 1 0 0-.1M19 12.2a1.4 1.4 0 1 0 0-.1",
+	file: "M6 3h8l4 4v14H6zM14 3v4h4M9 13h6M9 17h6",
+	goal: "M12 21a9 9 0 1 0 0-18 9 9 0 0 0 0 18M12 16.5a4.5 4.5 0 1 0 0-9 4.5 4.5 0 0 0 0 9M12 12h.01",
+	collect: "M12 3v12M7 10l5 5 5-5M4 20h16",
+	results: "M4 20V4M4 20h16M8 16v-4M12 16V8M16 16v-6",
+	compare: "M8 4v16M16 4v16M4 8h8M12 16h8",
+	readout: "M3 12h3M18 12h3M12 3v3M12 18v3M12 16a4 4 0 1 0 0-8 4 4 0 0 0 0 8",
+	check: "M4 12.5l5 5L20 6.5",
+	test: "M6 4h12v16H6zM9 9l1.5 1.5L13 8M9 15l1.5 1.5L13 14M15 10h1M15 16h1",
+	records: "M4 6h16M4 12h16M4 18h10",
+	certificate: "M5 4h14v11H5zM9 8h6M9 11h4M12 15v6M9.5 19l2.5-2 2.5 2",
+	more: "M5 12h.01M12 12h.01M19 12h.01",
+	good: "M5 12.5l4.5 4.5L19 7",
+	bad: "M6 6l12 12M18 6L6 18",
+	warn: "M12 4l9 16H3zM12 10v4M12 17.2h.01",
+	note: "M12 21a9 9 0 1 0 0-18 9 9 0 0 0 0 18M12 11v5M12 7.8h.01",
+	open: "M12 21a9 9 0 1 0 0-18 9 9 0 0 0 0 18",
+	sound: "M4 10v4h4l5 4V6l-5 4zM17 9a4 4 0 0 1 0 6M19.5 6.5a8 8 0 0 1 0 11",
+	silent: "M4 10v4h4l5 4V6l-5 4zM17 10l4 4M21 10l-4 4",
+	close: "M6 6l12 12M18 6L6 18",
+	down: "M6 9l6 6 6-6",
+	save: "M12 4v11M8 11l4 4 4-4M5 20h14",
+	plus: "M12 5v14M5 12h14",
+	turn: "M20 12a8 8 0 1 1-2.5-5.8M20 4v4h-4",
+} as const;
+
+export type IconName = keyof typeof ICONS;

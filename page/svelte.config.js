@@ -1,0 +1,2 @@
+/** Read by the build and by svelte-check alike. */
+export default { compilerOptions: { runes: true } };
