@@ -12,6 +12,13 @@ from tests.serve.servers import Client, Threaded
 from ulna.serve.desk import Desk
 from ulna.serve.problems import NotThereError
 
+
+def desk_of(folder: Path) -> Desk:
+    for name in ("desk", "sessions", "jobs"):
+        (folder / name).mkdir(exist_ok=True)
+    return Desk(folder / "desk", folder / "sessions", folder / "jobs")
+
+
 SCRIPT = '<script>alert("x")</script>'
 
 
@@ -83,10 +90,9 @@ def test_a_report_that_was_brought_is_never_shown(client: Client) -> None:
 
 
 def test_a_file_that_was_changed_is_not_given_for_what_it_was(tmp_path: Path) -> None:
-    (tmp_path / "desk").mkdir()
     (tmp_path / "sessions" / "one").mkdir(parents=True)
     (tmp_path / "sessions" / "one" / "study.toml").write_text('format = "ulna-study/1"\n')
-    desk = Desk(tmp_path / "desk", tmp_path / "sessions")
+    desk = desk_of(tmp_path)
     (found,) = desk.all()
     path = desk.path(found.sha256)
     path.write_text('format = "ulna-study/2"\n')
@@ -100,9 +106,11 @@ def test_a_file_that_was_changed_is_not_given_for_what_it_was(tmp_path: Path) ->
 
 
 def test_what_is_on_the_desk_is_there_after_a_restart(tmp_path: Path) -> None:
-    (tmp_path / "desk").mkdir()
-    (tmp_path / "sessions").mkdir()
-    first = Desk(tmp_path / "desk", tmp_path / "sessions").put("a b.csv", b"1\n")
+    first = desk_of(tmp_path).put("a b.csv", b"1\n")
     os.mkfifo(tmp_path / "sessions" / "pipe.toml")  # whoever put it there: nobody waits for it
     (tmp_path / "sessions" / "loop").symlink_to(tmp_path)
-    assert Desk(tmp_path / "desk", tmp_path / "sessions").all() == [first]
+    (tmp_path / "jobs" / "a1").mkdir()
+    (tmp_path / "jobs" / "a1" / "report.html").write_text("made here")
+    (tmp_path / "jobs" / "a1" / ".half.html").write_text("made hal")
+    assert {each.name for each in desk_of(tmp_path).all()} == {"a b.csv", "report.html"}
+    assert first in desk_of(tmp_path).all()

@@ -13,6 +13,7 @@ from websockets.exceptions import InvalidStatus
 
 from ulna.serve import guarding
 from ulna.serve.desk import LONGEST, plain_name
+from ulna.serve.problems import problem
 
 HOSTILE = (
     "/api/v1/files/../../bench.toml",
@@ -172,3 +173,9 @@ def test_errors_are_problems_in_words(client: Client) -> None:
     client.refused(422, "POST", "/jobs", content=b'{"kind": NaN}', headers=json_)
     client.refused(422, "POST", "/jobs", content=json.dumps("\ud800").encode(), headers=json_)
     client.refused(405, "DELETE", "/files")
+
+
+def test_messages_name_files_as_they_came() -> None:
+    at = "/srv/ulna-bench"
+    said = f"{at}/desk/{'a' * 64}/plan.toml: wrong; see '{at}/sessions/2026-11-30-1/study.toml' and {at}/other/x.toml."
+    assert problem(400, said).detail == f"plan.toml: wrong; see 'study.toml' and {at}/other/x.toml."

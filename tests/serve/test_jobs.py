@@ -49,7 +49,7 @@ def test_cancelled(server: Threaded, client: Client) -> None:
         raise AssertionError("it should have stopped")
 
     first = jobs.begin("calibrate", "one", work)
-    second = jobs.begin("calibrate", "two", lambda progress: [])
+    second = jobs.begin("calibrate", "two", lambda progress: Made([]))
     assert going.wait(60)
     assert client.get(f"/jobs/{second.id}")["state"] == "waiting"
     client.post(f"/jobs/{second.id}/cancel")
@@ -70,7 +70,7 @@ def test_one_that_fails_stops_no_other(
         raise error
 
     failed = server.workshop.jobs.begin("calibrate", "bad", work)
-    after = server.workshop.jobs.begin("calibrate", "good", lambda progress: [])
+    after = server.workshop.jobs.begin("calibrate", "good", lambda progress: Made([]))
     assert client.waited(after.id)["state"] == "done"
     job = client.get(f"/jobs/{failed.id}")
     assert (job["state"], job["problem"]["status"]) == ("failed", status)

@@ -73,6 +73,24 @@ class StepEntry(Open):
     """The number of a surface's touch, in place of a feature."""
 
 
+class CurveEntry(Open):
+    """What is expected after so many."""
+
+    measurements: int
+    u_length_mm: float
+    random_u_length_mm: float
+
+
+class TrialEntry(Open):
+    """What a simulation of it gave."""
+
+    runs: int
+    planned_mm: float
+    """Length errors of fresh bars, root mean square."""
+    random_mm: float
+    gain: float
+
+
 class PlanResultFile(Open):
     """A plan: `ulna-plan-result/1`; figures besides are for readers."""
 
@@ -83,6 +101,16 @@ class PlanResultFile(Open):
     places: Annotated[list[StandEntry], Field(min_length=1)]
     """Where the artefact stands, in the order of work."""
     planned: dict[str, Any]
+    random: dict[str, Any] = Field(default_factory=dict)
+    curve: list[CurveEntry] = Field(default_factory=list)
+    """Over the number chosen."""
+    trial: TrialEntry | None = None
+    parameters: int | None = None
+    """That are free."""
+    determined: int | None = None
+    """Directions of them that the candidates determine."""
+    candidates: int | None = None
+    gain: float | None = None
     steps: Annotated[list[StepEntry], Field(min_length=1)]
 
 

@@ -12,9 +12,14 @@ from ulna.records.due import today
 
 
 def lent(name: str, quantities: Sequence[str], expired_because: str | None) -> Lent:
+    """By the record that is found without being named: see `lent_by`."""
+    return lent_by(Bench.open(), name, quantities, expired_because)
+
+
+def lent_by(bench: Bench, name: str, quantities: Sequence[str], expired_because: str | None) -> Lent:
     """The first of the quantities that its certificate states. Raises UlnaInputError for what is not registered, not in
     use, has no such value, or none that is valid, unless a reason is given."""
-    bench, on = Bench.open(), today()
+    on = today()
     with bench.reading() as connection:
         row = asked.equipment(connection, name, ("artefact",))
         if row["state"] != "in use":

@@ -13,7 +13,7 @@ from ulna.ground.version import VERSION
 from ulna.serve import page, problems
 from ulna.serve.contract.live import LiveEvent
 from ulna.serve.guarding import Guard, Guests
-from ulna.serve.routes import about, activities, arms, bench, files, jobs, live, results, sources
+from ulna.serve.routes import about, activities, arms, bench, files, jobs, live, plans, results, sources, tables
 from ulna.serve.routes.common import PREFIX, PROBLEMS
 from ulna.serve.workshop import Workshop
 
@@ -23,6 +23,8 @@ ROUTERS: tuple[APIRouter, ...] = (
     files.router,
     arms.router,
     sources.router,
+    tables.router,
+    plans.router,
     activities.router,
     jobs.router,
     results.router,

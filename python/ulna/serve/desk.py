@@ -18,6 +18,8 @@ MOST_BYTES = 256 << 20
 LONGEST = 120
 _LOOKED = {".toml", ".json"}
 """Of a session's folder: its other files are asked for through these."""
+_MADE = {".toml", ".json", ".html", ".pdf", ".xml", ".csv"}
+"""Of a job's."""
 
 
 @dataclass(frozen=True)
@@ -29,19 +31,21 @@ class _Kept:
 class Desk:
     """Files that were brought, and those that sessions left.
 
-    folder: what is brought goes to FOLDER/SHA-256/NAME. sessions: a folder each, looked through for what they left.
+    folder: what is brought goes to FOLDER/SHA-256/NAME. sessions, jobs: a folder each, looked through for what they
+    left.
     """
 
-    def __init__(self, folder: Path, sessions: Path) -> None:
-        self._folder, self._sessions = folder, sessions
+    def __init__(self, folder: Path, sessions: Path, jobs: Path) -> None:
+        self._folder = folder
         self._lock = threading.Lock()
         self._kept: dict[str, _Kept] = {}
         for path in sorted(folder.glob("*/*")):
             if path.is_file():
                 self._keep(path)
-        for path in sorted(sessions.glob("*/**/*")):
-            if path.suffix.lower() in _LOOKED and path.is_file():
-                self._keep(path)
+        for place, looked in ((sessions, _LOOKED), (jobs, _MADE)):
+            for path in sorted(place.glob("*/**/*")):
+                if path.suffix.lower() in looked and path.is_file() and not path.name.startswith("."):
+                    self._keep(path)
 
     def put(self, name: str, content: bytes) -> FileInfo:
         """A file that was brought; the same content is there once. Raises UlnaInputError."""

@@ -16,16 +16,27 @@ from ulna.serve.contract.files import FileInfo
 from ulna.serve.contract.live import JobEvent
 from ulna.serve.contract.model import Problem
 from ulna.serve.hub import Hub
-from ulna.serve.problems import FAULT, NotThereError, problem, status_of
+from ulna.serve.problems import FAULT, NotThereError, problem, status_of, without_places
 
 KEPT = 100
 TOLD_S = 0.1
 
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
 Progress = Callable[[str, int, int], None]
-Made = list[tuple[str, Path]]
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a job made."""
+
+    files: list[tuple[str, Path]]
+    """By their role."""
+    said: list[str] = field(default_factory=list)
+    """What is to be known of it."""
+
+
 Work = Callable[[Progress], Made]
-"""Does it, calling back with (stage, done, total); files that it made, by their role."""
+"""Does it, calling back with (stage, done, total)."""
 
 
 class CancelledError(Exception):
@@ -43,6 +54,7 @@ class _Job:
     done: int = 0
     total: int = 0
     made: list[wire.Made] = field(default_factory=list)
+    sentences: list[str] = field(default_factory=list)
     problem: Problem | None = None
     cancelled: threading.Event = field(default_factory=threading.Event)
 
@@ -56,6 +68,7 @@ class _Job:
             done=self.done,
             total=self.total,
             made=list(self.made),
+            said=[said[:4000] for said in self.sentences],
             problem=self.problem,
         )
 
@@ -125,7 +138,9 @@ class Jobs:
                 raise CancelledError
             job.state = "running"
             self._tell(job)
-            for role, path in job.work(progress):
+            made = job.work(progress)
+            job.sentences = [without_places(each) for each in made.said]
+            for role, path in made.files:
                 info = self._keep(path)
                 job.made.append(wire.Made(role=role, sha256=info.sha256, name=info.name))
             job.state = "done"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Awaitable, Callable
 
 from fastapi import FastAPI, Request
@@ -27,6 +28,10 @@ TITLES = {
 FAULT = "This is a fault of Ulna's, please report it; nothing was written."
 
 
+_PLACES = re.compile(r"(?<![\w.])/[^\s:;,'()]*/(?:desk/[0-9a-f]{64}|jobs/[0-9a-f]{16}|sessions/[\w-]+)/")
+"""Where a bench keeps files."""
+
+
 class NotThereError(UlnaInputError):
     """What is asked for by name, and is not there."""
 
@@ -37,7 +42,13 @@ class NotNowError(UlnaInputError):
 
 def problem(status: int, detail: str) -> Problem:
     """One."""
-    return Problem(title=TITLES.get(status, "This did not go"), status=status, detail=for_people(detail)[:4000])
+    said = for_people(without_places(detail))[:4000]
+    return Problem(title=TITLES.get(status, "This did not go"), status=status, detail=said)
+
+
+def without_places(text: str) -> str:
+    """A message that names files as whoever brought them knows them."""
+    return _PLACES.sub("", text)
 
 
 def answer(status: int, detail: str) -> JSONResponse:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import socket
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,8 +23,8 @@ NAMES = ("127.0.0.1", "localhost")
 
 
 def serve(folder: Path, port: int | None, by: str | None, ready: Callable[[str], None]) -> None:
-    """Until Ctrl-C or SIGTERM. port: None: 8765, or another where that is taken; 0: any. ready: is given the address to open, once
-    it answers. Raises UlnaInputError."""
+    """Until Ctrl-C or SIGTERM. port: None: 8765, or another where that is taken; 0: any. ready: is given the address
+    to open, once it answers. Raises UlnaInputError."""
     listening = listening_at(port)
     workshop = Workshop(folder, by)
     try:
@@ -57,7 +58,10 @@ class _Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Ctrl-C, or being asked to end, is how it ends; nothing is raised anew."""
+        """Ctrl-C, or being asked to end, is how it ends; nothing is raised anew. In a thread there are no signals."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
         before = {number: signal.signal(number, self.handle_exit) for number in (signal.SIGINT, signal.SIGTERM)}
         try:
             yield

@@ -49,6 +49,7 @@ KINDS: dict[str, tuple[FileKind, Callable[[Path], str]]] = {
     "ulna-arm": (FileKind.ARM, _arm),
     "ulna-result": (FileKind.RESULT, _result),
     "ulna-plan": (FileKind.PLAN, _plain("a plan")),
+    "ulna-plan-result": (FileKind.PLANNED, _plain("what was planned")),
     "ulna-study": (FileKind.STUDY, _plain("a study")),
     "ulna-source": (FileKind.SOURCE, _plain("a source of readings")),
     "ulna-protocol": (FileKind.PROTOCOL, _plain("the protocol of a check")),

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ulna.arm.given import as_arm
 from ulna.calibration.calibrate import calibrate
 from ulna.documents.gather import gather
 from ulna.documents.write import write_report
+from ulna.ground.extras import need
 from ulna.live.judging import FOLDER
-from ulna.serve.contract.jobs import BeginCalibrate, BeginJob, BeginReport
+from ulna.planning.file import load_plan_spec
+from ulna.planning.folder import NEEDS_PICTURES, STUDY, TABLE, WORK_SHEET
+from ulna.planning.plan import plan
+from ulna.planning.planned import ARM, PLAN
+from ulna.serve.contract.jobs import BeginCalibrate, BeginJob, BeginPlan, BeginReport
 from ulna.serve.jobs import Made, Progress
+from ulna.serve.remarks import remarks
 from ulna.serve.workshop import Workshop
 from ulna.study.study import Study
 
@@ -23,8 +31,13 @@ def _calibrate(asked: BeginCalibrate, workshop: Workshop, folder: Path) -> Plann
     study = workshop.desk.path(asked.study)
 
     def work(progress: Progress) -> Made:
-        calibrate(Study.load(study), progress).save(folder / "result")
-        return [("result", folder / "result" / "result.json")]
+        with remarks() as said:
+            loaded = Study.load(study)
+        found = calibrate(loaded, progress)
+        found.save(folder / "result")
+        if not found.fit.converged:
+            said = [f"The fit did not converge ({found.fit.termination}): do not use these numbers.", *said]
+        return Made([("result", folder / "result" / "result.json")], said)
 
     return f"calibrate {study.name}", work
 
@@ -38,12 +51,35 @@ def _report(asked: BeginReport, workshop: Workshop, folder: Path) -> Planned:
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "report.html"
         write_report(content, {"html": path}, asked.language, [result], False)
-        return [("report", path)]
+        return Made([("report", path)])
 
     return f"report of {result.name}", work
 
 
-WORKS: dict[type, Callable[[Any, Workshop, Path], Planned]] = {BeginCalibrate: _calibrate, BeginReport: _report}
+def _plan(asked: BeginPlan, workshop: Workshop, folder: Path) -> Planned:
+    need(NEEDS_PICTURES, "matplotlib", "typst", "fontTools")
+    arm, path = as_arm(workshop.desk.path(asked.arm)), workshop.desk.path(asked.plan)
+    spec = load_plan_spec(path, arm)
+    if asked.anywhere:
+        spec = replace(spec, within=None)
+
+    def work(progress: Progress) -> Made:
+        from ulna.documents.work_sheet.sheet import check_paper, work_sheet
+
+        check_paper(arm, spec, asked.language, None)
+        found = plan(arm, spec, progress)
+        found.save(folder, False, {WORK_SHEET: work_sheet(found, asked.language)})
+        names = {"planned": PLAN, "study": STUDY, "arm": ARM, "table": TABLE, "work-sheet": WORK_SHEET}
+        return Made([(role, folder / name) for role, name in names.items()])
+
+    return f"plan {path.name}", work
+
+
+WORKS: dict[type, Callable[[Any, Workshop, Path], Planned]] = {
+    BeginCalibrate: _calibrate,
+    BeginReport: _report,
+    BeginPlan: _plan,
+}
 """What was asked → how it is done."""
 
 

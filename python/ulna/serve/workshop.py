@@ -33,7 +33,7 @@ class Workshop:
         for name in (DESK, SESSIONS, JOBS):
             (folder / name).mkdir(exist_ok=True)
         self.hub = Hub()
-        self.desk = Desk(folder / DESK, folder / SESSIONS)
+        self.desk = Desk(folder / DESK, folder / SESSIONS, folder / JOBS)
         self.hall = Hall(folder / SESSIONS, self.desk, self.hub)
         self.jobs = Jobs(self.hub, self.desk.take)
 

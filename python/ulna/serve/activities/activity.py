@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import ClassVar
 
 from ulna.live.stream import Frames, Stream
-from ulna.serve.contract.activities import Do, State
+from ulna.serve.contract.activities import State
 from ulna.serve.contract.live import LiveEvent
+from ulna.serve.contract.words import Do
 from ulna.serve.frames import Newest
 from ulna.serve.problems import NotNowError
 

@@ -21,8 +21,8 @@ from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.seen import Seen
 from ulna.serve.activities.touching import steer, virtual_of
 from ulna.serve.contract import activities as wire
-from ulna.serve.contract.activities import Do, DoAnswer, DoGo
 from ulna.serve.contract.live import FaultEvent, LiveEvent, SaidEvent, StateEvent
+from ulna.serve.contract.words import Do, DoAnswer, DoGo
 from ulna.serve.frames import Newest
 from ulna.serve.problems import NotNowError
 

@@ -15,7 +15,8 @@ from ulna.live.ending import JOURNAL, RESULT, touches_in
 from ulna.serve.activities.beginning import ABOUT, Place
 from ulna.serve.activities.running import Running
 from ulna.serve.contract import activities as wire
-from ulna.serve.contract.activities import Begin, BeginTouch, Do
+from ulna.serve.contract.activities import Begin, BeginTouch
+from ulna.serve.contract.words import Do
 from ulna.serve.desk import Desk
 from ulna.serve.hub import Hub
 from ulna.serve.problems import NotNowError, NotThereError

@@ -20,9 +20,9 @@ from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.seen import Seen
 from ulna.serve.activities.touching import steer, virtual_of
 from ulna.serve.contract import activities as wire
-from ulna.serve.contract.activities import Do, DoFeature, DoGo, DoTakeBack, DoTouch, DoTrust
 from ulna.serve.contract.live import FaultEvent, LiveEvent, RefusedEvent, SaidEvent, StateEvent, TipEvent
 from ulna.serve.contract.model import Value
+from ulna.serve.contract.words import Do, DoFeature, DoGo, DoTakeBack, DoTouch, DoTrust
 from ulna.serve.frames import Newest
 from ulna.serve.texts import valued
 

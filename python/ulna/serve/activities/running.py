@@ -20,8 +20,9 @@ from ulna.live.stream import Stream
 from ulna.serve.activities.beginning import Place, begun, keep_asked, needs_angles
 from ulna.serve.activities.opened import stated_source
 from ulna.serve.contract import activities as wire
-from ulna.serve.contract.activities import Begin, BeginTouch, Do, DoEnd
+from ulna.serve.contract.activities import Begin, BeginTouch
 from ulna.serve.contract.live import EndedEvent, FaultEvent, LiveEvent, SaidEvent, StreamEvent
+from ulna.serve.contract.words import Do, DoEnd
 from ulna.serve.frames import packed
 from ulna.serve.hub import Hub
 from ulna.serve.problems import NotNowError

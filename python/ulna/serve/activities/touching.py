@@ -23,18 +23,9 @@ from ulna.live.trigger import Refused
 from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.metered import meter_said, next_said, touch_said
 from ulna.serve.activities.seen import Seen, from_degrees
-from ulna.serve.contract.activities import (
-    Do,
-    DoFollow,
-    DoGo,
-    DoHoldOut,
-    DoMoved,
-    DoTouch,
-    DoTrust,
-    DoWithdraw,
-    TouchState,
-)
+from ulna.serve.contract.activities import TouchState
 from ulna.serve.contract.live import FaultEvent, KnownEvent, LiveEvent, RefusedEvent, SaidEvent, StateEvent, TouchEvent
+from ulna.serve.contract.words import Do, DoFollow, DoGo, DoHoldOut, DoMoved, DoTouch, DoTrust, DoWithdraw
 from ulna.serve.frames import Newest
 from ulna.serve.problems import NotNowError
 

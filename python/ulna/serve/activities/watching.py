@@ -10,8 +10,9 @@ from ulna.live.samples import Samples
 from ulna.live.stream import Frames, Stream
 from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.seen import Seen, seen
-from ulna.serve.contract.activities import Do, DoTrust, WatchState
+from ulna.serve.contract.activities import WatchState
 from ulna.serve.contract.live import LiveEvent
+from ulna.serve.contract.words import Do, DoTrust
 from ulna.serve.frames import Newest
 
 

@@ -1,4 +1,4 @@
-"""What is done with a stream: begun, steered by words, looked at. A kind of activity is a row of each union."""
+"""What is done with a stream: begun, looked at. A kind of activity is a row of each union."""
 
 from __future__ import annotations
 
@@ -63,87 +63,6 @@ class BeginMeasure(Asked):
 
 
 Begin = Annotated[BeginWatch | BeginCommission | BeginTouch | BeginMeasure, Field(discriminator="kind")]
-
-# ------------------------------------------------------------ what is said to it
-
-
-class DoTouch(Asked):
-    """A touch now: a key, a pedal."""
-
-    word: Literal["touch"]
-
-
-class DoMoved(Asked):
-    """The artefact was put elsewhere."""
-
-    word: Literal["moved"]
-
-
-class DoWithdraw(Asked):
-    """A touch shall not count; nothing is deleted."""
-
-    word: Literal["withdraw"]
-    number: Annotated[int, Field(ge=1)]
-    reason: Annotated[str, Field(min_length=1, max_length=500)]
-
-
-class DoHoldOut(Asked):
-    """From now on so many fresh places, not fitted; 0: touches are fitted again."""
-
-    word: Literal["hold-out"]
-    places: Annotated[int, Field(ge=0, le=100)]
-
-
-class DoTrust(Asked):
-    """The angles are right again."""
-
-    word: Literal["trust"]
-
-
-class DoFeature(Asked):
-    """The next touch begins a new feature of a kind: point, length, ball, circle, plane, distance."""
-
-    word: Literal["feature"]
-    kind: Name
-
-
-class DoTakeBack(Asked):
-    """The last point does not count."""
-
-    word: Literal["take-back"]
-
-
-class DoGo(Asked):
-    """The virtual arm goes to a posture."""
-
-    word: Literal["go"]
-    q_deg: Annotated[list[float], Field(min_length=1, max_length=16)]
-
-
-class DoFollow(Asked):
-    """The virtual hand does what is asked for next, or stops doing so."""
-
-    word: Literal["follow"]
-    follows: bool
-
-
-class DoAnswer(Asked):
-    """The answer to a question that a commissioning asks."""
-
-    word: Literal["answer"]
-    answer: Literal["yes", "again", "skip", "endless"]
-
-
-class DoEnd(Asked):
-    """It is over: what it leaves is written."""
-
-    word: Literal["end"]
-
-
-Do = Annotated[
-    DoTouch | DoMoved | DoWithdraw | DoHoldOut | DoTrust | DoFeature | DoTakeBack | DoGo | DoFollow | DoAnswer | DoEnd,
-    Field(discriminator="word"),
-]
 
 # ------------------------------------------------------------ what is known of it
 

@@ -13,6 +13,7 @@ class FileKind(StrEnum):
     ARM = "arm"
     RESULT = "result"
     PLAN = "plan"
+    PLANNED = "planned"
     STUDY = "study"
     SOURCE = "source"
     PROTOCOL = "protocol"

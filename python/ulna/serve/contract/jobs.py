@@ -24,7 +24,19 @@ class BeginReport(Asked):
     language: Literal["en", "de", "zh"] = "en"
 
 
-BeginJob = Annotated[BeginCalibrate | BeginReport, Field(discriminator="kind")]
+class BeginPlan(Asked):
+    """Places, postures and their order, as `ulna plan` chooses them."""
+
+    kind: Literal["plan"]
+    arm: Sha256
+    plan: Sha256
+    anywhere: bool = False
+    """Wherever the arm reaches: below the table and overhead too."""
+    language: Literal["en", "de", "zh"] = "en"
+    """Of the work sheet."""
+
+
+BeginJob = Annotated[BeginCalibrate | BeginReport | BeginPlan, Field(discriminator="kind")]
 
 
 class Made(Said):
@@ -47,6 +59,8 @@ class Job(Said):
     total: int
     """0: not known."""
     made: list[Made]
+    said: list[Sentence]
+    """What is to be known of what it made."""
     problem: Problem | None
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
-from ulna.serve.contract.activities import Activities, Activity, Begin, Do
+from ulna.serve.contract.activities import Activities, Activity, Begin
+from ulna.serve.contract.words import Do
 from ulna.serve.routes.common import Named, workshop
 
 router = APIRouter(prefix="/activities", tags=["activities"])

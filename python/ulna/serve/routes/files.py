@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, HTTPException, Query, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, Response
 
 from ulna.serve.contract.files import FileInfo, FileKind, Files
@@ -35,7 +36,7 @@ async def bring(request: Request, name: Annotated[str, Query(min_length=1, max_l
         if count > MOST_BYTES:
             raise HTTPException(413, f"{name[:80]}: more than {MOST_BYTES} bytes; expected fewer. Cut it.")
         pieces.append(piece)
-    return workshop(request).desk.put(name, b"".join(pieces))
+    return await run_in_threadpool(workshop(request).desk.put, name, b"".join(pieces))
 
 
 @router.get("/{sha256}")
