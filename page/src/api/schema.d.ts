@@ -376,6 +376,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/plans": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make
+         * @description A plan file of what is stated; what is not, as `ulna plan --make-plan` fills it in.
+         */
+        post: operations["make_api_v1_plans_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/plans/{sha256}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Plan
+         * @description A plan file, or a study, for an arm.
+         */
+        get: operations["plan_api_v1_plans__sha256__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/plans/{sha256}/outcome": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Outcome
+         * @description Of a plan.json: places, order, what a length will be worth over touches.
+         */
+        get: operations["outcome_api_v1_plans__sha256__outcome_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/play": {
         parameters: {
             query?: never;
@@ -450,6 +510,46 @@ export interface paths {
         get: operations["ports_api_v1_sources_ports_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/studies": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make
+         * @description The study, as `ulna new` writes it; a job calibrates it.
+         */
+        post: operations["make_api_v1_studies_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/tables/look": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Look
+         * @description Rows as they stand, what columns are taken for, what is asked, what is wrong; nothing is written.
+         */
+        post: operations["look_api_v1_tables_look_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -540,6 +640,40 @@ export interface components {
             sha256: string;
         };
         /**
+         * ArmSaid
+         * @description The arm: one that is drawn, or how long it is.
+         */
+        ArmSaid: {
+            /** Angle Unit */
+            angle_unit?: ("rad" | "deg") | null;
+            /** Arm */
+            arm?: string | null;
+            /** Ball Mm */
+            ball_mm?: number | null;
+            /** Base Link */
+            base_link?: string | null;
+            /** Convention */
+            convention?: ("dh" | "modified-dh") | null;
+            /** Counts Per Turn */
+            counts_per_turn?: number[] | null;
+            /** Dh */
+            dh?: string | null;
+            /** Parallel */
+            parallel?: string[] | null;
+            /** Reach Mm */
+            reach_mm?: number | null;
+            /** Signs */
+            signs?: ("known" | "unknown") | null;
+            /** Tip */
+            tip?: number[] | null;
+            /** Tip Link */
+            tip_link?: string | null;
+            /** Urdf */
+            urdf?: string | null;
+            /** Zeros */
+            zeros?: ("known" | "unknown") | null;
+        };
+        /**
          * ArmWhole
          * @description The same with its parameters and its picture.
          */
@@ -556,6 +690,28 @@ export interface components {
         Arms: {
             /** Arms */
             arms: components["schemas"]["ArmInfo"][];
+        };
+        /**
+         * ArtefactAsked
+         * @description What is touched: as the record has it, or as it is stated here.
+         */
+        ArtefactAsked: {
+            /** Diameter Mm */
+            diameter_mm?: number | null;
+            /** Expired Because */
+            expired_because?: string | null;
+            /** Features */
+            features?: components["schemas"]["FeatureAsked"][] | null;
+            /** Kind */
+            kind?: string | null;
+            /** Length Mm */
+            length_mm?: number | null;
+            /** Name */
+            name?: string | null;
+            /** Record */
+            record?: string | null;
+            /** U Mm */
+            u_mm?: number | null;
         };
         /**
          * Bar
@@ -639,6 +795,38 @@ export interface components {
              * @description A URL (serial:, tcp:, ws:, …), or the SHA-256 of a source file or a recording of the desk.
              */
             source: string;
+        };
+        /**
+         * BeginPlan
+         * @description Places, postures and their order, as `ulna plan` chooses them.
+         */
+        BeginPlan: {
+            /**
+             * Anywhere
+             * @default false
+             */
+            anywhere: boolean;
+            /**
+             * Arm
+             * @description SHA-256 of a file's bytes
+             */
+            arm: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "plan";
+            /**
+             * Language
+             * @default en
+             * @enum {string}
+             */
+            language: "en" | "de" | "zh";
+            /**
+             * Plan
+             * @description SHA-256 of a file's bytes
+             */
+            plan: string;
         };
         /**
          * BeginReport
@@ -790,6 +978,36 @@ export interface components {
             serial: string | null;
             /** State */
             state: string;
+        };
+        /**
+         * ColumnSaid
+         * @description What a column of the file is.
+         */
+        ColumnSaid: {
+            /** Ours */
+            ours: string;
+            /** Theirs */
+            theirs: string;
+        };
+        /**
+         * ColumnSeen
+         * @description One column.
+         */
+        ColumnSeen: {
+            /** Bad */
+            bad: string[];
+            /** Filled */
+            filled: number;
+            /** Name */
+            name: string;
+            /** Numeric */
+            numeric: boolean;
+            /** Taken For */
+            taken_for: string | null;
+            /** Unit */
+            unit: string;
+            /** Why */
+            why: string;
         };
         /**
          * CommissionState
@@ -973,6 +1191,16 @@ export interface components {
             event: "ended";
         };
         /**
+         * Expected
+         * @description What a length is worth after so many measurements, U (k = 2).
+         */
+        Expected: {
+            /** Measurements */
+            measurements: number;
+            planned: components["schemas"]["Value"];
+            random: components["schemas"]["Value"];
+        };
+        /**
          * Fact
          * @description Something and its values.
          */
@@ -1034,6 +1262,16 @@ export interface components {
             why_not: string | null;
         };
         /**
+         * FeatureAsked
+         * @description A point of an artefact, in its own frame.
+         */
+        FeatureAsked: {
+            /** Name */
+            name: string;
+            /** Point Mm */
+            point_mm: number[];
+        };
+        /**
          * FileInfo
          * @description One file.
          */
@@ -1058,7 +1296,7 @@ export interface components {
          * @description What a file is, as far as Ulna knows it.
          * @enum {string}
          */
-        FileKind: "arm" | "result" | "plan" | "study" | "source" | "protocol" | "profile" | "laboratory" | "table" | "other";
+        FileKind: "arm" | "result" | "plan" | "planned" | "study" | "source" | "protocol" | "profile" | "laboratory" | "table" | "other";
         /**
          * Files
          * @description All of them, the newest first.
@@ -1066,6 +1304,19 @@ export interface components {
         Files: {
             /** Files */
             files: components["schemas"]["FileInfo"][];
+        };
+        /**
+         * Gain
+         * @description A figure of the plan beside the same of random measurements.
+         */
+        Gain: {
+            /**
+             * Figure
+             * @enum {string}
+             */
+            figure: "length" | "length-worst" | "point" | "simulated";
+            planned: components["schemas"]["Value"];
+            random: components["schemas"]["Value"];
         };
         /**
          * GuessAsked
@@ -1144,6 +1395,8 @@ export interface components {
             /** Made */
             made: components["schemas"]["Made"][];
             problem: components["schemas"]["Problem"] | null;
+            /** Said */
+            said: string[];
             /** Stage */
             stage: string;
             /**
@@ -1229,6 +1482,42 @@ export interface components {
             next: components["schemas"]["Next"] | null;
         };
         /**
+         * LabelSaid
+         * @description What a label in a column is.
+         */
+        LabelSaid: {
+            /** Column */
+            column: string;
+            /** Ours */
+            ours: string;
+            /** Theirs */
+            theirs: string;
+        };
+        /**
+         * LayoutAsked
+         * @description How a table is written, where it is not seen: as the options of `ulna new` have it.
+         */
+        LayoutAsked: {
+            /** Comment */
+            comment?: string | null;
+            /** Dataset */
+            dataset?: string | null;
+            /** Decimal */
+            decimal?: string | null;
+            /** Encoding */
+            encoding?: string | null;
+            /** Header */
+            header?: number | null;
+            /** Separator */
+            separator?: string | null;
+            /** Sheet */
+            sheet?: string | null;
+            /** Thousands */
+            thousands?: string | null;
+            /** Units Row */
+            units_row?: boolean | null;
+        };
+        /**
          * Left
          * @description A file that an activity left.
          */
@@ -1279,6 +1568,19 @@ export interface components {
         Login: {
             /** Token */
             token: string;
+        };
+        /**
+         * Looked
+         * @description What became of looking: a proposal, or questions, or what is wrong.
+         */
+        Looked: {
+            proposal: components["schemas"]["ProposalSaid"] | null;
+            /** Questions */
+            questions: components["schemas"]["QuestionSaid"][];
+            /** Tables */
+            tables: components["schemas"]["TableSeen"][];
+            /** Wrong */
+            wrong: string | null;
         };
         /**
          * Made
@@ -1440,6 +1742,136 @@ export interface components {
             text: string;
         };
         /**
+         * Place
+         * @description Where the artefact is put.
+         */
+        Place: {
+            /** Azimuth Deg */
+            azimuth_deg: number;
+            /** Lies */
+            lies: string;
+            /** Measurements */
+            measurements: number[];
+            /** Number */
+            number: number;
+            /** Points Mm */
+            points_mm: [
+                number,
+                number,
+                number
+            ][];
+            /** Slope Deg */
+            slope_deg: number;
+        };
+        /**
+         * PlanAsked
+         * @description A plan file to be made; None: as `ulna plan --make-plan` fills it in.
+         */
+        PlanAsked: {
+            /**
+             * Arm
+             * @description SHA-256 of a file's bytes
+             */
+            arm: string;
+            artefact: components["schemas"]["ArtefactAsked"];
+            /** Encoder Rad */
+            encoder_rad?: number[] | null;
+            /**
+             * Measurements
+             * @default 100
+             */
+            measurements: number;
+            /**
+             * Name
+             * @default plan.toml
+             */
+            name: string;
+            /**
+             * Places
+             * @default 12
+             */
+            places: number;
+            /** Probe */
+            probe?: string | null;
+            /** Seat Mm */
+            seat_mm?: number | null;
+            /** Test Length Mm */
+            test_length_mm?: number | null;
+            /** Touches */
+            touches?: number | null;
+            /** Travel Deg */
+            travel_deg?: number[][] | null;
+            /** Trials */
+            trials?: number | null;
+        };
+        /**
+         * PlanInfo
+         * @description A plan file, as it is understood for an arm.
+         */
+        PlanInfo: {
+            /** Artefact */
+            artefact: string;
+            /** Encoder Rad */
+            encoder_rad: number[];
+            /** Features */
+            features: string[];
+            file: components["schemas"]["FileInfo"];
+            /** Kind */
+            kind: string;
+            /** Measurements */
+            measurements: number;
+            /** Places */
+            places: number | null;
+            /** Probe */
+            probe: string | null;
+            seat: components["schemas"]["Value"];
+            /** Stated */
+            stated: string;
+            test_length: components["schemas"]["Value"] | null;
+            /** Text */
+            text: string;
+            /** Touches */
+            touches: number;
+            /** Travel Deg */
+            travel_deg: [
+                number,
+                number
+            ][] | null;
+        };
+        /**
+         * PlanOutcome
+         * @description What planning found.
+         */
+        PlanOutcome: {
+            /** Arm */
+            arm: string;
+            /** Artefact */
+            artefact: string;
+            /** Candidates */
+            candidates: number | null;
+            /** Determined */
+            determined: number | null;
+            /** Expected */
+            expected: components["schemas"]["Expected"][];
+            /** Gain */
+            gain: number | null;
+            /** Gains */
+            gains: components["schemas"]["Gain"][];
+            /** Parameters */
+            parameters: number | null;
+            /** Places */
+            places: components["schemas"]["Place"][];
+            /** Sentences */
+            sentences: string[];
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+            /** Steps */
+            steps: components["schemas"]["Step"][];
+        };
+        /**
          * Play
          * @description A virtual arm, ready to be tried: what to begin with.
          */
@@ -1513,6 +1945,30 @@ export interface components {
             type: string;
         };
         /**
+         * ProposalSaid
+         * @description A study that can be written.
+         */
+        ProposalSaid: {
+            /** Angle */
+            angle: string;
+            /** Angle Why */
+            angle_why: string;
+            /** Arm */
+            arm: string;
+            /** Artefacts */
+            artefacts: string[];
+            /** Joints */
+            joints: number;
+            /** Remarks */
+            remarks: string[];
+            /** Rows */
+            rows: number;
+            /** Search */
+            search: boolean;
+            /** Signs Unknown */
+            signs_unknown: boolean;
+        };
+        /**
          * Question
          * @description What is asked for now.
          */
@@ -1532,6 +1988,22 @@ export interface components {
              * @enum {string}
              */
             step: "hold" | "turn" | "posture" | "way";
+        };
+        /**
+         * QuestionSaid
+         * @description What nobody has said, and the files do not say.
+         */
+        QuestionSaid: {
+            /** About */
+            about: string;
+            /** Asks */
+            asks: string;
+            /** Choices */
+            choices: string[];
+            /** Field */
+            field: string;
+            /** Flag */
+            flag: string;
         };
         /**
          * RefusedEvent
@@ -1585,6 +2057,16 @@ export interface components {
              * @description SHA-256 of a file's bytes
              */
             sha256: string;
+        };
+        /**
+         * RowSeen
+         * @description One row, as it stands.
+         */
+        RowSeen: {
+            /** At */
+            at: string;
+            /** Cells */
+            cells: string[];
         };
         /**
          * SaidEvent
@@ -1672,6 +2154,22 @@ export interface components {
             state: components["schemas"]["WatchState"] | components["schemas"]["CommissionState"] | components["schemas"]["TouchState"] | components["schemas"]["MeasureState"];
         };
         /**
+         * Step
+         * @description One touch, in the order of work.
+         */
+        Step: {
+            /** Feature */
+            feature: string;
+            /** Measurement */
+            measurement: number;
+            /** Number */
+            number: number;
+            /** Place */
+            place: number;
+            /** Q Deg */
+            q_deg: number[];
+        };
+        /**
          * Stream
          * @description A source, now.
          */
@@ -1710,6 +2208,53 @@ export interface components {
             stream: components["schemas"]["Stream"];
         };
         /**
+         * StudyAsked
+         * @description All that is said of files of readings; what is not is found in them, or asked for.
+         */
+        StudyAsked: {
+            /** Angle */
+            angle?: ("rad" | "deg" | "counts") | null;
+            /** @default {} */
+            arm: components["schemas"]["ArmSaid"];
+            /** Columns */
+            columns?: components["schemas"]["ColumnSaid"][];
+            /** Files */
+            files: string[];
+            /** Labels */
+            labels?: components["schemas"]["LabelSaid"][];
+            /** @default {} */
+            layout: components["schemas"]["LayoutAsked"];
+            /** Length Unit */
+            length_unit?: ("mm" | "m" | "in") | null;
+            /**
+             * One Standing
+             * @default false
+             */
+            one_standing: boolean;
+            /**
+             * Skip Bad
+             * @default false
+             */
+            skip_bad: boolean;
+            /** Touched */
+            touched?: components["schemas"]["TouchedAsked"][];
+        };
+        /**
+         * StudyMade
+         * @description A study on the desk.
+         */
+        StudyMade: {
+            arm: components["schemas"]["FileInfo"];
+            /** Determined */
+            determined: number;
+            /** Parameters */
+            parameters: number;
+            proposal: components["schemas"]["ProposalSaid"];
+            /** Sentences */
+            sentences: string[];
+            study: components["schemas"]["FileInfo"];
+        };
+        /**
          * TableBlock
          * @description Cells under heads.
          */
@@ -1731,6 +2276,28 @@ export interface components {
             name: string;
             /** Rows */
             rows: components["schemas"]["Piece"][][][];
+        };
+        /**
+         * TableSeen
+         * @description One file, looked at.
+         */
+        TableSeen: {
+            /** Columns */
+            columns: components["schemas"]["ColumnSeen"][];
+            file: components["schemas"]["FileInfo"];
+            /** First */
+            first: components["schemas"]["RowSeen"][];
+            /** Head */
+            head: string;
+            /** Remarks */
+            remarks: string[];
+            /** Rows */
+            rows: number;
+            /** Seen */
+            seen: [
+                string,
+                string
+            ][];
         };
         /**
          * Tile
@@ -1854,6 +2421,24 @@ export interface components {
             touches: components["schemas"]["Touch"][];
             /** Why No Fit */
             why_no_fit: string | null;
+        };
+        /**
+         * TouchedAsked
+         * @description An artefact that was touched; what is not said is asked for.
+         */
+        TouchedAsked: {
+            /** Diameter Mm */
+            diameter_mm?: number | null;
+            /** Features */
+            features?: string | null;
+            /** Kind */
+            kind: string;
+            /** Length Mm */
+            length_mm?: number | null;
+            /** Name */
+            name?: string | null;
+            /** U Mm */
+            u_mm?: number | null;
         };
         /**
          * Unfinished
@@ -3326,7 +3911,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["BeginCalibrate"] | components["schemas"]["BeginReport"];
+                "application/json": components["schemas"]["BeginCalibrate"] | components["schemas"]["BeginReport"] | components["schemas"]["BeginPlan"];
             };
         };
         responses: {
@@ -3867,6 +4452,287 @@ export interface operations {
             };
         };
     };
+    make_api_v1_plans_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlanAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    plan_api_v1_plans__sha256__get: {
+        parameters: {
+            query: {
+                /** @description SHA-256 of a file's bytes */
+                arm: string;
+            };
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    outcome_api_v1_plans__sha256__outcome_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOutcome"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
     virtual_api_v1_play_post: {
         parameters: {
             query?: never;
@@ -4161,6 +5027,194 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Ports"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    make_api_v1_studies_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StudyAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StudyMade"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    look_api_v1_tables_look_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StudyAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Looked"];
                 };
             };
             /** @description Bad Request */
