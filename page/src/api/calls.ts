@@ -60,6 +60,12 @@ export const result = (sha256: string, language: Language) =>
 		client.GET("/api/v1/results/{sha256}", { params: { path: { sha256 }, query: { language } } }),
 	);
 
+export const makePlan = (body: Say.PlanAsked) => got<Say.PlanInfo>(client.POST("/api/v1/plans", { body }));
+export const plan = (sha256: string, arm: string) =>
+	got<Say.PlanInfo>(client.GET("/api/v1/plans/{sha256}", { params: { path: { sha256 }, query: { arm } } }));
+export const planned = (sha256: string) =>
+	got<Say.PlanOutcome>(client.GET("/api/v1/plans/{sha256}/outcome", { params: { path: { sha256 } } }));
+
 /** A file by its bytes; its name goes beside them. */
 export const bring = (file: Blob, name: string) =>
 	got<Say.FileInfo>(
