@@ -66,6 +66,10 @@ export const plan = (sha256: string, arm: string) =>
 export const planned = (sha256: string) =>
 	got<Say.PlanOutcome>(client.GET("/api/v1/plans/{sha256}/outcome", { params: { path: { sha256 } } }));
 
+export const look = (body: Say.StudyAsked) => got<Say.Looked>(client.POST("/api/v1/tables/look", { body }));
+export const makeStudy = (body: Say.StudyAsked) =>
+	got<Say.StudyMade>(client.POST("/api/v1/studies", { body }));
+
 /** A file by its bytes; its name goes beside them. */
 export const bring = (file: Blob, name: string) =>
 	got<Say.FileInfo>(
