@@ -17,9 +17,9 @@ from ulna.records.bench import Bench, Writing, checked_text
 from ulna.records.filed.kind import About, FiledKind, in_utc
 from ulna.records.filed.registry import format_of, kind_of
 from ulna.records.projection import stated_rows
-from ulna.records.registering import content_of, file_name
+from ulna.records.registering import content_of, file_name, registered
 from ulna.records.store import sha256_of
-from ulna.records.tables import ENTRY, FILE
+from ulna.records.tables import ENTRY, EQUIPMENT, FILE
 
 ARMS = ("arm", "robot")
 
@@ -37,6 +37,8 @@ class Filing:
     """Of the record, on which it rests."""
     with_it: Mapping[str, Path] = field(default_factory=dict)
     """What belongs to it: a role, such as "study" → the file."""
+    anew: bool = False
+    """An arm that is not registered is registered first; both or nothing."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,8 @@ def _when(filing: Filing, said: str | None) -> str:
 
 def _filed(doing: Writing, ready: _Ready) -> Filed:
     connection = doing.connection
+    if ready.filing.anew and asked.last_of(connection, EQUIPMENT, "name", ready.arm) is None:
+        registered(doing, checked_text(ready.arm, "name"), "arm")
     arm = _arm(connection, ready.arm, ready.filing)
     stated = dict(ready.stated)
     stated["artefacts"] = [asked.equipment(connection, each, ("artefact",))["name"] for each in ready.filing.artefacts]

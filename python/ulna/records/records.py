@@ -12,7 +12,7 @@ from sqlalchemy import select
 from ulna.comparison.compare import Comparison
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.shown import About, Shown, Table
-from ulna.records import asked, compared, copies, filing, rebuild, registering, standing, verify
+from ulna.records import asked, compared, copies, filing, listing, rebuild, registering, standing, verify
 from ulna.records.advising import Advice, Wanted, advise, decide
 from ulna.records.bench import Bench
 from ulna.records.copies import Copied
@@ -81,6 +81,16 @@ class Records(Shown):
         """Of an arm, the earliest first, without those that were withdrawn."""
         with self.bench.reading() as connection:
             return [dict(row) for row in calibrations(connection, asked.equipment(connection, arm)["name"])]
+
+    def certified(self, artefact: str) -> list[dict[str, Any]]:
+        """All that certificates of an artefact ever said, the newest first."""
+        with self.bench.reading() as connection:
+            return [dict(row) for row in listing.values(connection, artefact)]
+
+    def certificates(self, arm: str | None = None) -> list[dict[str, Any]]:
+        """That were issued, of all arms or of one, the newest first, each with its state and why it is so."""
+        with self.bench.reading() as connection:
+            return [dict(row) for row in listing.certificates(connection, arm)]
 
     def last_of(self, arm: str, source: str) -> Outcome | None:
         """How the newest check or test of an arm ended: the worst of its figures. source: check, verification."""
@@ -154,11 +164,12 @@ class Records(Shown):
         at: str | None = None,
         artefacts: Sequence[str] = (),
         with_it: Mapping[str, Path_] | None = None,
+        register: bool = False,
     ) -> list[Filed]:
         """Files, all or none; what each is, is found out. at: when it was measured; artefacts: on which of the record
-        it rests; with_it: what belongs to it, by role."""
+        it rests; with_it: what belongs to it, by role; register: an arm that is not there yet is registered."""
         beside = {role: Path(path) for role, path in (with_it or {}).items()}
-        return filing.file_all(self.bench, [Filing(Path(path), arm, at, artefacts, beside) for path in paths])
+        return filing.file_all(self.bench, [Filing(Path(path), arm, at, artefacts, beside, register) for path in paths])
 
     def interval(self, name: str, days: float, method: str | None = None, why: str | None = None) -> Entry:
         """When equipment must come back, as somebody decided: days from its last calibration or test."""

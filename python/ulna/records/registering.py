@@ -7,6 +7,7 @@ import stat
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from sqlalchemy import Connection
 
@@ -92,10 +93,13 @@ def register(bench: Bench, name: str, kind: str, state: str | None, details: Map
         chosen("state", state, of_equipment.STATES)
     said = {key: checked_text(value, key) for key, value in details.items() if value is not None}
     with bench.writing() as doing:
-        return _registered(doing, name, kind, state, said)
+        return registered(doing, name, kind, state, said)
 
 
-def _registered(doing: Writing, name: str, kind: str, state: str | None, said: Mapping[str, str]) -> Entry:
+def registered(
+    doing: Writing, name: str, kind: str, state: str | None = None, said: Mapping[str, str] = MappingProxyType({})
+) -> Entry:
+    """The same, of what was looked at, in the middle of writing. Raises UlnaInputError."""
     before = asked.last_of(doing.connection, EQUIPMENT, "name", name)
     if before is not None and before["kind"] != kind:
         raise UlnaInputError(f"record: '{name}' is registered as {before['kind']}, not {kind}. Choose another name.")
@@ -163,7 +167,7 @@ def certify(
     sha256 = keep(bench, certificate)
     with bench.writing() as doing:
         if anew is not None:
-            _registered(doing, artefact, "artefact", state, said)
+            registered(doing, artefact, "artefact", state, said)
         name = asked.equipment(doing.connection, artefact, ("artefact",))["name"]
         return doing.add("certified", name, named, {"certificate": sha256} if sha256 else {})
 

@@ -13,7 +13,22 @@ from ulna.ground.version import VERSION
 from ulna.serve import page, problems
 from ulna.serve.contract.live import LiveEvent
 from ulna.serve.guarding import Guard, Guests
-from ulna.serve.routes import about, activities, arms, bench, files, jobs, live, plans, results, sources, tables
+from ulna.serve.routes import (
+    about,
+    activities,
+    arms,
+    bench,
+    compare,
+    files,
+    filing,
+    jobs,
+    live,
+    plans,
+    records,
+    results,
+    sources,
+    tables,
+)
 from ulna.serve.routes.common import PREFIX, PROBLEMS
 from ulna.serve.workshop import Workshop
 
@@ -28,6 +43,9 @@ ROUTERS: tuple[APIRouter, ...] = (
     activities.router,
     jobs.router,
     results.router,
+    compare.router,
+    records.router,
+    filing.router,
 )
 
 

@@ -78,6 +78,12 @@ class Desk:
             raise NotThereError(f"{kept.info.name}: it was changed since it came. Bring it once more.")
         return kept.path
 
+    def has(self, digest: str) -> bool:
+        """Whether it is here; what is in it is not looked at."""
+        with self._lock:
+            kept = self._kept.get(digest)
+        return kept is not None and kept.path.is_file()
+
     def info(self, digest: str) -> FileInfo:
         """What is known of it. Raises NotThereError."""
         self.path(digest)

@@ -20,12 +20,15 @@ def sections(content: Content, language: str) -> list[wire.Section]:
     """All of them, in their order."""
     words = Words(language)
     return [
-        wire.Section(
-            key=key, title=plain(words(f"section.{key}")), blocks=[_block(each) for each in found if _shown(each)]
-        )
+        wire.Section(key=key, title=plain(words(f"section.{key}")), blocks=blocks_said(found))
         for key, found in sections_of(content, words).items()
         if found
     ]
+
+
+def blocks_said(found: Sequence[blocks.Block | Legend]) -> list[wire.Block]:
+    """Some of them."""
+    return [_block(each) for each in found if _shown(each)]
 
 
 def _shown(block: object) -> bool:

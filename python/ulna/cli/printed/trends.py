@@ -11,10 +11,10 @@ from rich.text import Text
 
 from ulna.cli.printed.tables import table
 from ulna.control.drift import Drift
-from ulna.ground.digits import figure_mm, quantity
 from ulna.records.advising import Advice
-from ulna.records.history import Point, Series
+from ulna.records.history import Series
 from ulna.records.trend import Trend
+from ulna.records.trend_words import chart_said, figure_said
 
 _LATEST = 12
 
@@ -38,8 +38,8 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
             each.source,
             each.verdict or "",
             "outside" if k in outside else "",
-            _number(each.value, each),
-            "-" if each.u is None else _number(each.u, each),
+            figure_said(each.value, each),
+            "-" if each.u is None else figure_said(each.u, each),
         )
         for k, each in enumerate(points, start=first)
     ]
@@ -50,36 +50,10 @@ def trend_report(found: Trend, everything: bool) -> list[RenderableType]:
     parts += ["", Text(f"Drift: {found.drift.said}")]
     if found.until is not None:
         parts.append(Text(f"Limit: {found.until.reason}"))
-    parts.append(Text(f"Chart: {_chart(found)}"))
+    parts.append(Text(f"Chart: {chart_said(found)}"))
     if found.breaks:
         parts.append(Text(f"Meanwhile: {'; '.join(found.breaks)}. With --since DAY only what came after."))
     return parts
-
-
-def _number(value: float, of: Point) -> str:
-    """A figure in mm; a parameter in its unit, as its u has it."""
-    if of.unit == "mm" or of.u is None:
-        return figure_mm(value)
-    return quantity(value, of.u, of.unit)
-
-
-def _chart(found: Trend) -> str:
-    chart, limits, of = found.chart, found.chart.limits, found.points[-1]
-    if limits.lower is None or limits.upper is None:
-        return f"{limits.basis.said}; nothing is said of control."
-    said = f"limits {_number(limits.lower, of)} to {_number(limits.upper, of)}, of the first {found.baseline}"
-    if chart.in_control is None:
-        return f"{said}: no figure came after them."
-    why = [
-        *(["beyond the limits"] if chart.beyond else []),
-        *(["the average has left the mean"] if chart.drifted else []),
-    ]
-    verdict = f"the newest is out of control ({'; '.join(why)})" if why else "the newest is in control"
-    earlier = sum(int(k) < chart.new - 1 for k in limits.outside)
-    told = [f"{earlier} earlier outside"] if earlier else []
-    told += [run.words for run in (chart.rows.ending(chart.new - 1) if chart.rows else ())]
-    besides = f"; told besides: {', '.join(told)}" if told else ""
-    return f"{said}: {verdict}{besides}."
 
 
 def trend_document(found: Trend) -> dict[str, Any]:

@@ -19,9 +19,11 @@ _LEAST_P = 1e-3
 
 def moved(content: Content, words: Words) -> list[Block]:
     """Nothing where no earlier calibration was named."""
-    found = content.moved
-    if found is None:
-        return []
+    return [] if content.moved is None else step_blocks(content.moved, words)
+
+
+def step_blocks(found: Compared, words: Words) -> list[Block]:
+    """Of one calibration and the one before it."""
     lengths = [
         [
             own(f"{band.least_mm:.0f} … {band.most_mm:.0f}"),
