@@ -56,6 +56,27 @@ export const SCREENS: readonly ScreenRow[] = [
 		first: false,
 		load: () => import("./screens/ReadOut.svelte"),
 	},
+	{
+		path: "/compare",
+		title: "screen.compare",
+		icon: "compare",
+		first: false,
+		load: () => import("./screens/Compare.svelte"),
+	},
+	{
+		path: "/records",
+		title: "screen.records",
+		icon: "records",
+		first: false,
+		load: () => import("./screens/Records.svelte"),
+	},
+	{
+		path: "/certificate",
+		title: "screen.certificate",
+		icon: "certificate",
+		first: false,
+		load: () => import("./screens/Certificate.svelte"),
+	},
 ];
 
 export function screenOf(path: string): ScreenRow | undefined {

@@ -168,6 +168,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/compare": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Compare
+         * @description Each with the next: what it does to lengths, whether uncertainties explain it, which parameters it is.
+         */
+        post: operations["compare_api_v1_compare_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/files": {
         parameters: {
             query?: never;
@@ -456,6 +476,310 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/records/add": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Add
+         * @description Files of the desk, all or none: a result with its study and its readings, a check, a test.
+         */
+        post: operations["add_api_v1_records_add_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/certificates": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Certificates
+         * @description That were issued.
+         */
+        get: operations["certificates_api_v1_records_certificates_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/certify": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Certify
+         * @description What a certificate says of an artefact.
+         */
+        post: operations["certify_api_v1_records_certify_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/due": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Due
+         * @description What must come back, the soonest first, seen from a day.
+         */
+        get: operations["due_api_v1_records_due_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Of It
+         * @description By name, or those of a kind.
+         */
+        get: operations["all_of_it_api_v1_records_equipment_get"];
+        put?: never;
+        /**
+         * Register
+         * @description New, or as it is from now on.
+         */
+        post: operations["register_api_v1_records_equipment_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One
+         * @description One thing: history, figures that there are, calibrations, certificates.
+         */
+        get: operations["one_api_v1_records_equipment__name__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/advice": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Advice
+         * @description When it should come back, by each method; by drift only of a figure that is named.
+         */
+        get: operations["advice_api_v1_records_equipment__name__advice_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/events": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Event
+         * @description What happened to it; a quarantine, or its end, changes whether it may be used.
+         */
+        post: operations["event_api_v1_records_equipment__name__events_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/figures": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Figures
+         * @description A figure over time.
+         */
+        get: operations["figures_api_v1_records_equipment__name__figures_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/impact": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Impact
+         * @description What was done between the last good figure and the first bad one, or between stated times.
+         */
+        get: operations["impact_api_v1_records_equipment__name__impact_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/interval": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Interval
+         * @description Somebody decides when it must come back.
+         */
+        post: operations["interval_api_v1_records_equipment__name__interval_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/equipment/{name}/trend": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Trend
+         * @description The same with drift, limit and control chart.
+         */
+        get: operations["trend_api_v1_records_equipment__name__trend_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/issue": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Issue
+         * @description A certificate with its number and the record's head on it, entered and on the desk; or nothing of it.
+         */
+        post: operations["issue_api_v1_records_issue_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/verify": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Verify
+         * @description Chain, files and rows, all of them.
+         */
+        get: operations["verify_api_v1_records_verify_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/records/withdraw": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Withdraw
+         * @description A filed file, or a certificate: it is kept, and counts no longer.
+         */
+        post: operations["withdraw_api_v1_records_withdraw_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/results/{sha256}": {
         parameters: {
             query?: never;
@@ -620,6 +944,73 @@ export interface components {
             virtual: boolean;
         };
         /**
+         * AddAsked
+         * @description Files of the desk, all or none; what each is, is found out.
+         */
+        AddAsked: {
+            /** Arm */
+            arm?: string | null;
+            /** Artefacts */
+            artefacts?: string[];
+            /** At */
+            at?: string | null;
+            /** Files */
+            files: string[];
+            /**
+             * Register Arm
+             * @default false
+             */
+            register_arm: boolean;
+        };
+        /**
+         * Added
+         * @description All of them.
+         */
+        Added: {
+            /** Filed */
+            filed: components["schemas"]["FiledInfo"][];
+        };
+        /**
+         * Advice
+         * @description When it should come back, by one method.
+         */
+        Advice: {
+            /** Days */
+            days: number | null;
+            /** Method */
+            method: string;
+            /** Now Days */
+            now_days: number | null;
+            /** Reason */
+            reason: string;
+            /** Rests On */
+            rests_on: number;
+        };
+        /**
+         * AllAdvice
+         * @description By each method that can be asked.
+         */
+        AllAdvice: {
+            /** Advice */
+            advice: components["schemas"]["Advice"][];
+        };
+        /**
+         * AllDue
+         * @description The soonest first.
+         */
+        AllDue: {
+            /** Due */
+            due: components["schemas"]["DueInfo"][];
+        };
+        /**
+         * AllEquipment
+         * @description All of it, by name.
+         */
+        AllEquipment: {
+            /** Equipment */
+            equipment: components["schemas"]["Equipment"][];
+        };
+        /**
          * ArmInfo
          * @description An arm of the desk.
          */
@@ -712,6 +1103,30 @@ export interface components {
             record?: string | null;
             /** U Mm */
             u_mm?: number | null;
+        };
+        /**
+         * Band
+         * @description Lengths of a like size.
+         */
+        Band: {
+            /** At Mm */
+            at_mm: [
+                number,
+                number,
+                number
+            ];
+            /** Count */
+            count: number;
+            /** En */
+            en: number;
+            largest: components["schemas"]["Value"];
+            /** Least Mm */
+            least_mm: number;
+            /** Length Mm */
+            length_mm: number;
+            /** Most Mm */
+            most_mm: number;
+            rms: components["schemas"]["Value"];
         };
         /**
          * Bar
@@ -980,6 +1395,75 @@ export interface components {
             state: string;
         };
         /**
+         * Certificates
+         * @description The newest first.
+         */
+        Certificates: {
+            /** Certificates */
+            certificates: components["schemas"]["IssuedInfo"][];
+        };
+        /**
+         * CertifiedAsked
+         * @description One value of a certificate.
+         */
+        CertifiedAsked: {
+            /** Quantity */
+            quantity: string;
+            /** U Mm */
+            u_mm: number;
+            /** Value Mm */
+            value_mm: number;
+        };
+        /**
+         * CertifiedValue
+         * @description What a certificate says of an artefact.
+         */
+        CertifiedValue: {
+            /** By */
+            by: string | null;
+            /** Certificate */
+            certificate: string | null;
+            /** Newest */
+            newest: boolean;
+            /** Number */
+            number: string | null;
+            /** Quantity */
+            quantity: string;
+            /** Temperature C */
+            temperature_c: number | null;
+            /** Valid From */
+            valid_from: string | null;
+            /** Valid To */
+            valid_to: string | null;
+            value: components["schemas"]["Value"];
+        };
+        /**
+         * CertifyAsked
+         * @description What a certificate says of an artefact, which is registered where it is not yet.
+         */
+        CertifyAsked: {
+            /** Artefact */
+            artefact: string;
+            /** By */
+            by?: string | null;
+            /** Certificate */
+            certificate?: string | null;
+            /** Expansion Per K */
+            expansion_per_k?: number | null;
+            /** Expansion U Per K */
+            expansion_u_per_k?: number | null;
+            /** Number */
+            number?: string | null;
+            /** Temperature C */
+            temperature_c?: number | null;
+            /** Valid From */
+            valid_from?: string | null;
+            /** Valid To */
+            valid_to?: string | null;
+            /** Values */
+            values: components["schemas"]["CertifiedAsked"][];
+        };
+        /**
          * ColumnSaid
          * @description What a column of the file is.
          */
@@ -1026,6 +1510,42 @@ export interface components {
             steps: number;
             /** Steps Done */
             steps_done: number;
+        };
+        /**
+         * CompareAsked
+         * @description Two to six results of one arm, the earliest first; or the last of an arm of the record.
+         */
+        CompareAsked: {
+            /** Arm */
+            arm?: string | null;
+            /**
+             * Language
+             * @default en
+             * @enum {string}
+             */
+            language: "en" | "de" | "zh";
+            /**
+             * Last
+             * @default 2
+             */
+            last: number;
+            /** Probe */
+            probe?: string | null;
+            /** Results */
+            results?: string[] | null;
+            /**
+             * Shared U
+             * @default 0
+             */
+            shared_u: number;
+        };
+        /**
+         * Compared
+         * @description All of them.
+         */
+        Compared: {
+            /** Steps */
+            steps: components["schemas"]["ulna__serve__contract__compare__Step"][];
         };
         /**
          * DoAnswer
@@ -1179,6 +1699,24 @@ export interface components {
             captions: components["schemas"]["Piece"][][];
         };
         /**
+         * DueInfo
+         * @description Equipment that must come back.
+         */
+        DueInfo: {
+            /** Days */
+            days: number | null;
+            /** Due On */
+            due_on: string | null;
+            /** Kind */
+            kind: string;
+            /** Name */
+            name: string;
+            /** State */
+            state: string;
+            /** Why */
+            why: string;
+        };
+        /**
          * EndedEvent
          * @description The activity is over; what it left is named in it.
          */
@@ -1189,6 +1727,92 @@ export interface components {
              * @enum {string}
              */
             event: "ended";
+        };
+        /**
+         * Entries
+         * @description All of them.
+         */
+        Entries: {
+            /** Entries */
+            entries: components["schemas"]["Entry"][];
+        };
+        /**
+         * Entry
+         * @description What was entered.
+         */
+        Entry: {
+            /** Number */
+            number: number;
+            /** Subject */
+            subject: string;
+        };
+        /**
+         * Equipment
+         * @description One thing of the record, as it is now.
+         */
+        Equipment: {
+            /** Due Days */
+            due_days: number | null;
+            /** Due On */
+            due_on: string | null;
+            /** Due Why */
+            due_why: string | null;
+            /** Firmware */
+            firmware: string | null;
+            /** Kind */
+            kind: string;
+            /** Location */
+            location: string | null;
+            /** Maker */
+            maker: string | null;
+            /** Model */
+            model: string | null;
+            /** Name */
+            name: string;
+            /** Owner */
+            owner: string | null;
+            /** Part Of */
+            part_of: string | null;
+            /** Remark */
+            remark: string | null;
+            /** Serial */
+            serial: string | null;
+            /** State */
+            state: string;
+        };
+        /**
+         * EquipmentWhole
+         * @description One thing, and what became of it.
+         */
+        EquipmentWhole: {
+            /** Calibrations */
+            calibrations: components["schemas"]["FiledCalibration"][];
+            /** Certificates */
+            certificates: components["schemas"]["IssuedInfo"][];
+            equipment: components["schemas"]["Equipment"];
+            /** History */
+            history: components["schemas"]["Happening"][];
+            /** Series */
+            series: components["schemas"]["Series"][];
+            /** Values */
+            values: components["schemas"]["CertifiedValue"][];
+        };
+        /**
+         * EventAsked
+         * @description What happened to equipment.
+         */
+        EventAsked: {
+            /** At */
+            at?: string | null;
+            /** File */
+            file?: string | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "knock" | "repair" | "move" | "adjustment" | "firmware" | "quarantine" | "release" | "note";
+            /** Text */
+            text: string;
         };
         /**
          * Expected
@@ -1272,6 +1896,39 @@ export interface components {
             point_mm: number[];
         };
         /**
+         * FigurePoint
+         * @description A figure at one time.
+         */
+        FigurePoint: {
+            /** Artefact */
+            artefact: string | null;
+            /** At */
+            at: string;
+            limit: components["schemas"]["Value"] | null;
+            /** Outside */
+            outside: boolean;
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+            /** Source */
+            source: string;
+            /** State */
+            state: string;
+            value: components["schemas"]["Value"];
+            /** Verdict */
+            verdict: string | null;
+        };
+        /**
+         * FigurePoints
+         * @description A figure over time, without anything made of it.
+         */
+        FigurePoints: {
+            /** Points */
+            points: components["schemas"]["FigurePoint"][];
+        };
+        /**
          * FileInfo
          * @description One file.
          */
@@ -1297,6 +1954,44 @@ export interface components {
          * @enum {string}
          */
         FileKind: "arm" | "result" | "plan" | "planned" | "study" | "source" | "protocol" | "profile" | "laboratory" | "table" | "other";
+        /**
+         * FiledCalibration
+         * @description A calibration of the record that counts.
+         */
+        FiledCalibration: {
+            /** At */
+            at: string;
+            /** Converged */
+            converged: boolean;
+            /** Ending */
+            ending: string;
+            /** On Desk */
+            on_desk: boolean;
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+        };
+        /**
+         * FiledInfo
+         * @description What became of a file.
+         */
+        FiledInfo: {
+            /** Arm */
+            arm: string;
+            /** Kind */
+            kind: string;
+            /** Name */
+            name: string;
+            /** New */
+            new: boolean;
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+        };
         /**
          * Files
          * @description All of them, the newest first.
@@ -1353,6 +2048,24 @@ export interface components {
             source_toml: string | null;
         };
         /**
+         * Happening
+         * @description One line of a history.
+         */
+        Happening: {
+            /** At */
+            at: string;
+            /** By */
+            by: string;
+            /** Number */
+            number: number;
+            /** Sha256 */
+            sha256: string | null;
+            /** Text */
+            text: string;
+            /** What */
+            what: string;
+        };
+        /**
          * HeadingBlock
          * @description Of a part of a section.
          */
@@ -1380,6 +2093,119 @@ export interface components {
             event: "hello";
             /** Version */
             version: string;
+        };
+        /**
+         * Impact
+         * @description What was done between the last good figure and the first bad one.
+         */
+        Impact: {
+            /** Bad */
+            bad: string;
+            /** Certificates */
+            certificates: string[];
+            /** Good */
+            good: string | null;
+            /** Name */
+            name: string;
+            /** Touched */
+            touched: components["schemas"]["Happening"][];
+            /** Why */
+            why: string;
+        };
+        /**
+         * IntervalAsked
+         * @description When it must come back, as somebody decided.
+         */
+        IntervalAsked: {
+            /** Days */
+            days: number;
+            /** Method */
+            method?: string | null;
+            /** Why */
+            why?: string | null;
+        };
+        /**
+         * IssueAsked
+         * @description A certificate of a filed calibration.
+         */
+        IssueAsked: {
+            /** Approved By */
+            approved_by?: string | null;
+            /**
+             * Form
+             * @default pdf
+             * @enum {string}
+             */
+            form: "pdf" | "dcc";
+            /**
+             * Laboratory
+             * @description SHA-256 of a file's bytes
+             */
+            laboratory: string;
+            /**
+             * Language
+             * @default en
+             * @enum {string}
+             */
+            language: "en" | "de" | "zh";
+            /** Number */
+            number?: string | null;
+            /** Reason */
+            reason?: string | null;
+            /** Result */
+            result: string;
+            /** Supersedes */
+            supersedes?: string | null;
+            /** Verification */
+            verification?: string[];
+        };
+        /**
+         * IssuedInfo
+         * @description A certificate that was issued.
+         */
+        IssuedInfo: {
+            /** Approved By */
+            approved_by: string | null;
+            /** Arm */
+            arm: string;
+            /** Issued At */
+            issued_at: string;
+            /** Issued By */
+            issued_by: string;
+            /** Number */
+            number: string;
+            /** Reason */
+            reason: string;
+            /** Result */
+            result: string | null;
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+            /** State */
+            state: string;
+            /** Supersedes */
+            supersedes: string | null;
+        };
+        /**
+         * IssuedNow
+         * @description What was issued.
+         */
+        IssuedNow: {
+            /** Arm */
+            arm: string;
+            /** Head */
+            head: string;
+            /** Name */
+            name: string;
+            /** Number */
+            number: string;
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
         };
         /**
          * Job
@@ -1660,6 +2486,17 @@ export interface components {
             u_length: components["schemas"]["Value"];
         };
         /**
+         * MovedParameter
+         * @description A parameter whose difference is known.
+         */
+        MovedParameter: {
+            change: components["schemas"]["Value"];
+            /** Name */
+            name: string;
+            /** Ratio */
+            ratio: number;
+        };
+        /**
          * Next
          * @description Where to touch next.
          */
@@ -1869,7 +2706,7 @@ export interface components {
              */
             sha256: string;
             /** Steps */
-            steps: components["schemas"]["Step"][];
+            steps: components["schemas"]["ulna__serve__contract__plans__Step"][];
         };
         /**
          * Play
@@ -2019,6 +2856,37 @@ export interface components {
             sentence: string;
         };
         /**
+         * RegisterAsked
+         * @description Equipment: new, or as it is from now on. What is not said stays as it was.
+         */
+        RegisterAsked: {
+            /** Firmware */
+            firmware?: string | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "arm" | "robot" | "probe" | "artefact" | "thermometer";
+            /** Location */
+            location?: string | null;
+            /** Maker */
+            maker?: string | null;
+            /** Model */
+            model?: string | null;
+            /** Name */
+            name: string;
+            /** Owner */
+            owner?: string | null;
+            /** Part Of */
+            part_of?: string | null;
+            /** Remark */
+            remark?: string | null;
+            /** Serial */
+            serial?: string | null;
+            /** State */
+            state?: ("in use" | "quarantined" | "retired") | null;
+        };
+        /**
          * Residual
          * @description One reading that was fitted, and what the fit leaves of it.
          */
@@ -2109,6 +2977,22 @@ export interface components {
             title: string;
         };
         /**
+         * Series
+         * @description A figure that is there over time.
+         */
+        Series: {
+            /** Artefact */
+            artefact: string | null;
+            /** Count */
+            count: number;
+            /** Figure */
+            figure: string;
+            /** Last */
+            last: string;
+            /** State */
+            state: string;
+        };
+        /**
          * Shape
          * @description One thing to draw, fixed to a body; points in its frame, mm.
          */
@@ -2152,22 +3036,6 @@ export interface components {
             event: "state";
             /** State */
             state: components["schemas"]["WatchState"] | components["schemas"]["CommissionState"] | components["schemas"]["TouchState"] | components["schemas"]["MeasureState"];
-        };
-        /**
-         * Step
-         * @description One touch, in the order of work.
-         */
-        Step: {
-            /** Feature */
-            feature: string;
-            /** Measurement */
-            measurement: number;
-            /** Number */
-            number: number;
-            /** Place */
-            place: number;
-            /** Q Deg */
-            q_deg: number[];
         };
         /**
          * Stream
@@ -2441,6 +3309,38 @@ export interface components {
             u_mm?: number | null;
         };
         /**
+         * Trend
+         * @description A figure over time.
+         */
+        Trend: {
+            /** Arm */
+            arm: string;
+            /** Baseline */
+            baseline: number;
+            /** Breaks */
+            breaks: string[];
+            /** Centre */
+            centre: number | null;
+            /** Drifts */
+            drifts: boolean | null;
+            /** Figure */
+            figure: string;
+            /** In Control */
+            in_control: boolean | null;
+            /** Interval Days */
+            interval_days: number | null;
+            /** Lower */
+            lower: number | null;
+            /** Points */
+            points: components["schemas"]["FigurePoint"][];
+            /** Sentences */
+            sentences: string[];
+            /** Unit */
+            unit: string;
+            /** Upper */
+            upper: number | null;
+        };
+        /**
          * Unfinished
          * @description A session that was interrupted and can go on.
          */
@@ -2497,6 +3397,26 @@ export interface components {
             value: number | null;
         };
         /**
+         * Verified
+         * @description Whether the record is what was written.
+         */
+        Verified: {
+            /** Entries */
+            entries: number;
+            /** Files */
+            files: number;
+            /** Good */
+            good: boolean;
+            /** Head */
+            head: string;
+            /** Remarks */
+            remarks: string[];
+            /** Rows */
+            rows: number;
+            /** Wrong */
+            wrong: string[];
+        };
+        /**
          * WatchState
          * @description Of `watch`: nothing more than the stream itself.
          */
@@ -2506,6 +3426,62 @@ export interface components {
              * @enum {string}
              */
             kind: "watch";
+        };
+        /**
+         * WithdrawAsked
+         * @description What shall count no longer: it is kept.
+         */
+        WithdrawAsked: {
+            /** Reason */
+            reason: string;
+            /** Subject */
+            subject: string;
+        };
+        /**
+         * Step
+         * @description One calibration beside the next.
+         */
+        ulna__serve__contract__compare__Step: {
+            /** After */
+            after: string;
+            /** Bands */
+            bands: components["schemas"]["Band"][];
+            /** Before */
+            before: string;
+            /** Between */
+            between: string[];
+            /** Blocks */
+            blocks: (components["schemas"]["HeadingBlock"] | components["schemas"]["ParagraphBlock"] | components["schemas"]["ListedBlock"] | components["schemas"]["FactsBlock"] | components["schemas"]["TableBlock"] | components["schemas"]["TilesBlock"] | components["schemas"]["DrawingsBlock"])[];
+            /** Chi2 */
+            chi2: number;
+            /** Moved */
+            moved: boolean;
+            /** Not Determined */
+            not_determined: number;
+            /** P Of Largest */
+            p_of_largest: number;
+            /** P Value */
+            p_value: number;
+            /** Parameters */
+            parameters: components["schemas"]["MovedParameter"][];
+            /** Rank */
+            rank: number;
+        };
+        /**
+         * Step
+         * @description One touch, in the order of work.
+         */
+        ulna__serve__contract__plans__Step: {
+            /** Feature */
+            feature: string;
+            /** Measurement */
+            measurement: number;
+            /** Number */
+            number: number;
+            /** Place */
+            place: number;
+            /** Q Deg */
+            q_deg: number[];
         };
     };
     responses: never;
@@ -3274,6 +4250,100 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["BenchInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    compare_api_v1_compare_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CompareAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Compared"];
                 };
             };
             /** @description Bad Request */
@@ -4749,6 +5819,1514 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Play"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    add_api_v1_records_add_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AddAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Added"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    certificates_api_v1_records_certificates_get: {
+        parameters: {
+            query?: {
+                arm?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Certificates"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    certify_api_v1_records_certify_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CertifyAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Entries"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    due_api_v1_records_due_get: {
+        parameters: {
+            query?: {
+                on?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AllDue"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    all_of_it_api_v1_records_equipment_get: {
+        parameters: {
+            query?: {
+                kind?: ("arm" | "robot" | "probe" | "artefact" | "thermometer") | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AllEquipment"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    register_api_v1_records_equipment_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RegisterAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["EquipmentWhole"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    one_api_v1_records_equipment__name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["EquipmentWhole"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    advice_api_v1_records_equipment__name__advice_get: {
+        parameters: {
+            query?: {
+                figure?: string | null;
+                limit?: number | null;
+                guard?: number;
+                target?: number;
+            };
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AllAdvice"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    event_api_v1_records_equipment__name__events_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["EventAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Entries"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    figures_api_v1_records_equipment__name__figures_get: {
+        parameters: {
+            query: {
+                figure: string;
+                state?: string | null;
+                artefact?: string | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FigurePoints"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    impact_api_v1_records_equipment__name__impact_get: {
+        parameters: {
+            query?: {
+                since?: string | null;
+                until?: string | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Impact"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    interval_api_v1_records_equipment__name__interval_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["IntervalAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Entries"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    trend_api_v1_records_equipment__name__trend_get: {
+        parameters: {
+            query: {
+                figure: string;
+                state?: string | null;
+                artefact?: string | null;
+                since?: string | null;
+                limit?: number | null;
+                guard?: number;
+                baseline?: number | null;
+            };
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Trend"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    issue_api_v1_records_issue_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["IssueAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["IssuedNow"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    verify_api_v1_records_verify_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Verified"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    withdraw_api_v1_records_withdraw_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WithdrawAsked"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Entries"];
                 };
             };
             /** @description Bad Request */
