@@ -29,7 +29,11 @@ class Recording:
     def of(cls, arm: str) -> Recording:
         """Of the record that the environment or the settings name. Raises UlnaInputError where there is none, or no
         such arm."""
-        bench = Bench.open()
+        return cls.at(Bench.open(), arm)
+
+    @classmethod
+    def at(cls, bench: Bench, arm: str) -> Recording:
+        """Of this record. Raises UlnaInputError where there is no such arm."""
         with bench.reading() as connection:
             return cls(bench, str(asked.equipment(connection, arm, ARMS)["name"]))
 

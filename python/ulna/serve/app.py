@@ -23,6 +23,7 @@ from ulna.serve.routes import (
     filing,
     jobs,
     live,
+    outcomes,
     plans,
     records,
     results,
@@ -44,6 +45,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     jobs.router,
     results.router,
     compare.router,
+    outcomes.router,
     records.router,
     filing.router,
 )

@@ -78,6 +78,10 @@ class Desk:
             raise NotThereError(f"{kept.info.name}: it was changed since it came. Bring it once more.")
         return kept.path
 
+    def brought(self, path: Path) -> bool:
+        """Whether somebody brought it; else this program wrote it."""
+        return self._folder in path.parents
+
     def has(self, digest: str) -> bool:
         """Whether it is here; what is in it is not looked at."""
         with self._lock:

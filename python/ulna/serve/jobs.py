@@ -37,6 +37,8 @@ class Made:
 
 Work = Callable[[Progress], Made]
 """Does it, calling back with (stage, done, total)."""
+Planned = tuple[str, Work]
+"""A title, and the work."""
 
 
 class CancelledError(Exception):

@@ -24,6 +24,7 @@ from ulna.planning.spec import PlanSpec
 from ulna.records.bench import Bench
 from ulna.records.lending import lent_by
 from ulna.serve.activities.seen import in_degrees
+from ulna.serve.beside import usable
 from ulna.serve.contract import plans as wire
 from ulna.serve.texts import length
 from ulna.serve.workshop import Workshop
@@ -100,7 +101,7 @@ def _made(name: str, table: dict[str, Any]) -> Artefact:
 
 def plan_info(workshop: Workshop, sha256: str, arm: Arm) -> wire.PlanInfo:
     """A plan file, or a study, for an arm. Raises UlnaInputError."""
-    path = workshop.desk.path(sha256)
+    path = usable(workshop.desk, sha256)
     spec = purpose_of(path, arm).spec
     return wire.PlanInfo(
         file=workshop.desk.info(sha256),

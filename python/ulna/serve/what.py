@@ -53,6 +53,9 @@ KINDS: dict[str, tuple[FileKind, Callable[[Path], str]]] = {
     "ulna-study": (FileKind.STUDY, _plain("a study")),
     "ulna-source": (FileKind.SOURCE, _plain("a source of readings")),
     "ulna-protocol": (FileKind.PROTOCOL, _plain("the protocol of a check")),
+    "ulna-check": (FileKind.CHECK, _plain("what a check found")),
+    "ulna-verify": (FileKind.TEST, _plain("an acceptance test")),
+    "ulna-verification": (FileKind.VERIFICATION, _plain("what an acceptance test found")),
     "ulna-profile": (FileKind.PROFILE, _plain("the profile of an acceptance test")),
     "ulna-lab": (FileKind.LABORATORY, _plain("a laboratory")),
 }

@@ -9,26 +9,38 @@ from typing import Any
 
 from ulna.arm.given import as_arm
 from ulna.calibration.calibrate import calibrate
+from ulna.documents.certificate import certificate
 from ulna.documents.gather import gather
-from ulna.documents.write import write_report
+from ulna.documents.write import NEEDS, write_report
+from ulna.formats.output import write_file
+from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import need
 from ulna.live.judging import FOLDER
 from ulna.planning.file import load_plan_spec
 from ulna.planning.folder import NEEDS_PICTURES, STUDY, TABLE, WORK_SHEET
 from ulna.planning.plan import plan
 from ulna.planning.planned import ARM, PLAN
-from ulna.serve.contract.jobs import BeginCalibrate, BeginJob, BeginPlan, BeginReport
-from ulna.serve.jobs import Made, Progress
+from ulna.serve.beside import together, usable
+from ulna.serve.contract.jobs import (
+    BeginCalibrate,
+    BeginCertificate,
+    BeginCheck,
+    BeginJob,
+    BeginPlan,
+    BeginReport,
+    BeginVerify,
+)
+from ulna.serve.jobs import Made, Planned, Progress
 from ulna.serve.remarks import remarks
+from ulna.serve.tested import check_work, verify_work
 from ulna.serve.workshop import Workshop
 from ulna.study.study import Study
 
-Planned = tuple[str, Callable[[Progress], Made]]
-"""A title, and the work."""
+ENDINGS = {"pdf": "pdf", "dcc": "xml"}
 
 
 def _calibrate(asked: BeginCalibrate, workshop: Workshop, folder: Path) -> Planned:
-    study = workshop.desk.path(asked.study)
+    study = together(workshop.desk, folder, asked.study, asked.beside)
 
     def work(progress: Progress) -> Made:
         with remarks() as said:
@@ -58,7 +70,7 @@ def _report(asked: BeginReport, workshop: Workshop, folder: Path) -> Planned:
 
 def _plan(asked: BeginPlan, workshop: Workshop, folder: Path) -> Planned:
     need(NEEDS_PICTURES, "matplotlib", "typst", "fontTools")
-    arm, path = as_arm(workshop.desk.path(asked.arm)), workshop.desk.path(asked.plan)
+    arm, path = as_arm(workshop.desk.path(asked.arm)), usable(workshop.desk, asked.plan)
     spec = load_plan_spec(path, arm)
     if asked.anywhere:
         spec = replace(spec, within=None)
@@ -75,10 +87,33 @@ def _plan(asked: BeginPlan, workshop: Workshop, folder: Path) -> Planned:
     return f"plan {path.name}", work
 
 
+def _certificate(asked: BeginCertificate, workshop: Workshop, folder: Path) -> Planned:
+    if asked.form == "pdf":
+        need("option --pdf", *NEEDS["pdf"])
+    elif asked.annex:
+        raise UlnaInputError("annex: is of a PDF; expected form pdf. Leave it out.")
+    laboratory = together(workshop.desk, folder, asked.laboratory, asked.beside)
+    result = workshop.desk.path(asked.result)
+    tests = [workshop.desk.path(each) for each in asked.verification]
+
+    def work(progress: Progress) -> Made:
+        progress("certificate", 0, 1)
+        more = {"language": asked.language, "annex": asked.annex} if asked.form == "pdf" else {}
+        made = certificate(result, laboratory, tests, form=asked.form, **more)  # type: ignore[arg-type]
+        path = folder / f"draft.{ENDINGS[asked.form]}"
+        write_file(path, made)
+        return Made([("certificate", path)])
+
+    return f"draft of a certificate of {result.name}", work
+
+
 WORKS: dict[type, Callable[[Any, Workshop, Path], Planned]] = {
     BeginCalibrate: _calibrate,
     BeginReport: _report,
     BeginPlan: _plan,
+    BeginCheck: check_work,
+    BeginVerify: verify_work,
+    BeginCertificate: _certificate,
 }
 """What was asked → how it is done."""
 

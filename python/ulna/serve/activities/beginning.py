@@ -25,6 +25,7 @@ from ulna.serve.activities.commissioning import Commissioning
 from ulna.serve.activities.measuring import Measuring
 from ulna.serve.activities.touching import Touching
 from ulna.serve.activities.watching import Watching
+from ulna.serve.beside import usable
 from ulna.serve.contract.activities import Begin, BeginCommission, BeginMeasure, BeginTouch, BeginWatch
 from ulna.serve.desk import Desk
 
@@ -57,7 +58,7 @@ def _commission(asked: BeginCommission, stream: Stream, place: Place) -> Doing:
 
 
 def _touch(asked: BeginTouch, stream: Stream, place: Place) -> Doing:
-    arm_path, plan_path = place.desk.path(asked.arm), place.desk.path(asked.plan)
+    arm_path, plan_path = place.desk.path(asked.arm), usable(place.desk, asked.plan)
     arm = as_arm(arm_path)
     purpose = purpose_of(plan_path, arm, None, asked.length_mm)
     goal = None if asked.goal_mm is None else 0.5 * asked.goal_mm

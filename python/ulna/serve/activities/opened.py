@@ -18,7 +18,13 @@ def stated_source(desk: Desk, given: str) -> StatedSource:
     scheme, colon, rest = given.partition(":")
     if not colon:
         path = desk.path(given)
-        return read_source(path)
+        stated = read_source(path)
+        if desk.brought(path) and path.suffix.lower() == ".toml" and stated.url.scheme in OF_FILES and stated.url.path:
+            raise UlnaInputError(
+                f"{path.name}: key 'url': names a file of this machine; expected a stream. Bring that file, and name "
+                "it as the source."
+            )
+        return stated
     if scheme.lower() not in OF_FILES:
         if scheme.lower() not in KINDS:
             known = ", ".join(KINDS)

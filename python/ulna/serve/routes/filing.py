@@ -7,12 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 
 from ulna.serve import recorded
+from ulna.serve.beside import usable
 from ulna.serve.contract import filing as wire
 from ulna.serve.contract.records import AllDue, DueInfo
 from ulna.serve.routes.common import workshop
+from ulna.serve.work import ENDINGS
 
 router = APIRouter(prefix="/records", tags=["records"])
-ENDINGS = {"pdf": "pdf", "dcc": "xml"}
 
 
 @router.post("/add", status_code=201)
@@ -102,7 +103,7 @@ def issue(request: Request, asked: wire.IssueAsked) -> wire.IssuedNow:
     here = workshop(request)
     found = here.records.issue(
         asked.result,
-        here.desk.path(asked.laboratory),
+        usable(here.desk, asked.laboratory),
         verification=asked.verification,
         number=asked.number,
         form=asked.form,
