@@ -50,6 +50,13 @@ export const SCREENS: readonly ScreenRow[] = [
 		load: () => import("./screens/Results.svelte"),
 	},
 	{
+		path: "/compare",
+		title: "screen.compare",
+		icon: "compare",
+		first: false,
+		load: () => import("./screens/Compare.svelte"),
+	},
+	{
 		path: "/read-out",
 		title: "screen.read-out",
 		icon: "readout",
@@ -57,11 +64,18 @@ export const SCREENS: readonly ScreenRow[] = [
 		load: () => import("./screens/ReadOut.svelte"),
 	},
 	{
-		path: "/compare",
-		title: "screen.compare",
-		icon: "compare",
+		path: "/check",
+		title: "screen.check",
+		icon: "check",
 		first: false,
-		load: () => import("./screens/Compare.svelte"),
+		load: () => import("./screens/Check.svelte"),
+	},
+	{
+		path: "/test",
+		title: "screen.test",
+		icon: "test",
+		first: false,
+		load: () => import("./screens/Test.svelte"),
 	},
 	{
 		path: "/records",

@@ -104,6 +104,13 @@ export const issue = (body: Say.IssueAsked) =>
 export const compare = (body: Say.CompareAsked) =>
 	got<Say.Compared>(client.POST("/api/v1/compare", { body }));
 
+export const checked = (sha256: string) =>
+	got<Say.CheckOutcome>(client.GET("/api/v1/checks/{sha256}", { params: { path: { sha256 } } }));
+export const verified = (sha256: string) =>
+	got<Say.VerificationOutcome>(
+		client.GET("/api/v1/verifications/{sha256}", { params: { path: { sha256 } } }),
+	);
+
 /** A file by its bytes; its name goes beside them. */
 export const bring = (file: Blob, name: string) =>
 	got<Say.FileInfo>(

@@ -75,3 +75,5 @@ export type Entries = Schemas["Entries"];
 export type Happening = Schemas["Happening"];
 export type FiledCalibration = Schemas["FiledCalibration"];
 export type CertifiedValue = Schemas["CertifiedValue"];
+export type CheckOutcome = Schemas["CheckOutcome"];
+export type VerificationOutcome = Schemas["VerificationOutcome"];

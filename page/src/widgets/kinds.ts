@@ -14,9 +14,3 @@ export const STATES: Record<string, { tone: Tone; word: WordKey }> = {
 	quarantined: { tone: "bad", word: "bench.quarantined" },
 	retired: { tone: "soft", word: "bench.retired" },
 };
-export const VERDICTS: Record<string, Tone> = {
-	pass: "good",
-	fail: "bad",
-	"in control": "good",
-	"out of control": "bad",
-};
