@@ -8,6 +8,7 @@ import type { About, Activity, Begin, Do, Job, LiveEvent, Me } from "./api/types
 import { keep, kept } from "./kept";
 import { sound } from "./tones";
 import type { Feed, Frames } from "./widgets/picture";
+import { touchLine } from "./widgets/touching";
 
 export type Door = "opening" | "open" | "locked" | "silent";
 
@@ -88,7 +89,7 @@ class Bench {
 				break;
 			case "touch":
 				sound("taken");
-				announce(event.sentences.join(" "));
+				announce([touchLine(event.touch), ...event.sentences.slice(1)].join(" "));
 				break;
 			case "refused":
 				sound("refused");

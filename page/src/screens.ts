@@ -50,11 +50,46 @@ export const SCREENS: readonly ScreenRow[] = [
 		load: () => import("./screens/Results.svelte"),
 	},
 	{
+		path: "/compare",
+		title: "screen.compare",
+		icon: "compare",
+		first: false,
+		load: () => import("./screens/Compare.svelte"),
+	},
+	{
 		path: "/read-out",
 		title: "screen.read-out",
 		icon: "readout",
 		first: false,
 		load: () => import("./screens/ReadOut.svelte"),
+	},
+	{
+		path: "/check",
+		title: "screen.check",
+		icon: "check",
+		first: false,
+		load: () => import("./screens/Check.svelte"),
+	},
+	{
+		path: "/test",
+		title: "screen.test",
+		icon: "test",
+		first: false,
+		load: () => import("./screens/Test.svelte"),
+	},
+	{
+		path: "/records",
+		title: "screen.records",
+		icon: "records",
+		first: false,
+		load: () => import("./screens/Records.svelte"),
+	},
+	{
+		path: "/certificate",
+		title: "screen.certificate",
+		icon: "certificate",
+		first: false,
+		load: () => import("./screens/Certificate.svelte"),
 	},
 ];
 

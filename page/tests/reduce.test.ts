@@ -73,14 +73,14 @@ describe("events", () => {
 		const event = (one: Touch): LiveEvent => ({
 			event: "touch",
 			touch: one,
-			sentences: [`Touch ${one.number}.`],
+			sentences: ["Touch.", `Odd ${one.number}.`],
 		});
 		const found = told(event(touch(1)), event(touch(2)), event(touch(2, { suspicious: true })));
 		expect(stateOf(found).touches.map((each) => [each.number, each.suspicious])).toEqual([
 			[1, false],
 			[2, true],
 		]);
-		expect(found?.said).toEqual(["Touch 1.", "Touch 2.", "Touch 2."]);
+		expect(found?.said).toEqual(["Odd 1.", "Odd 2.", "Odd 2."]);
 	});
 	it("what is known is the newest", () => {
 		const found = told({ event: "known", meter: METER, next: null });

@@ -66,6 +66,51 @@ export const plan = (sha256: string, arm: string) =>
 export const planned = (sha256: string) =>
 	got<Say.PlanOutcome>(client.GET("/api/v1/plans/{sha256}/outcome", { params: { path: { sha256 } } }));
 
+export const look = (body: Say.StudyAsked) => got<Say.Looked>(client.POST("/api/v1/tables/look", { body }));
+export const makeStudy = (body: Say.StudyAsked) =>
+	got<Say.StudyMade>(client.POST("/api/v1/studies", { body }));
+
+export const equipment = () => got<Say.AllEquipment>(client.GET("/api/v1/records/equipment"));
+export const register = (body: Say.RegisterAsked) =>
+	got<Say.EquipmentWhole>(client.POST("/api/v1/records/equipment", { body }));
+export const equipmentOf = (name: string) =>
+	got<Say.EquipmentWhole>(client.GET("/api/v1/records/equipment/{name}", { params: { path: { name } } }));
+export const trend = (name: string, figure: string, state: string | null, artefact: string | null) =>
+	got<Say.Trend>(
+		client.GET("/api/v1/records/equipment/{name}/trend", {
+			params: { path: { name }, query: { figure, state, artefact } },
+		}),
+	);
+export const advice = (name: string, figure: string | null) =>
+	got<Say.AllAdvice>(
+		client.GET("/api/v1/records/equipment/{name}/advice", { params: { path: { name }, query: { figure } } }),
+	);
+export const impact = (name: string) =>
+	got<Say.Impact>(client.GET("/api/v1/records/equipment/{name}/impact", { params: { path: { name } } }));
+export const happened = (name: string, body: Say.EventAsked) =>
+	got<Say.Entries>(
+		client.POST("/api/v1/records/equipment/{name}/events", { params: { path: { name } }, body }),
+	);
+export const fileInRecord = (body: Say.AddAsked) =>
+	got<Say.Added>(client.POST("/api/v1/records/add", { body }));
+export const certify = (body: Say.CertifyAsked) =>
+	got<Say.Entries>(client.POST("/api/v1/records/certify", { body }));
+export const withdrawFiled = (subject: string, reason: string) =>
+	got<Say.Entries>(client.POST("/api/v1/records/withdraw", { body: { subject, reason } }));
+export const verifyRecord = () => got<Say.Verified>(client.GET("/api/v1/records/verify"));
+export const certificates = () => got<Say.Certificates>(client.GET("/api/v1/records/certificates"));
+export const issue = (body: Say.IssueAsked) =>
+	got<Say.IssuedNow>(client.POST("/api/v1/records/issue", { body }));
+export const compare = (body: Say.CompareAsked) =>
+	got<Say.Compared>(client.POST("/api/v1/compare", { body }));
+
+export const checked = (sha256: string) =>
+	got<Say.CheckOutcome>(client.GET("/api/v1/checks/{sha256}", { params: { path: { sha256 } } }));
+export const verified = (sha256: string) =>
+	got<Say.VerificationOutcome>(
+		client.GET("/api/v1/verifications/{sha256}", { params: { path: { sha256 } } }),
+	);
+
 /** A file by its bytes; its name goes beside them. */
 export const bring = (file: Blob, name: string) =>
 	got<Say.FileInfo>(

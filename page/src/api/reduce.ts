@@ -20,9 +20,10 @@ export function reduced(activity: Activity | null, event: LiveEvent): Activity |
 		case "state":
 			return { ...activity, state: event.state };
 		case "touch":
+			// its first sentence is what the list of touches says in every language
 			return said(
 				touching(activity, (state) => ({ ...state, touches: put(state.touches, event.touch) })),
-				event.sentences,
+				event.sentences.slice(1),
 			);
 		case "known":
 			return touching(activity, (state) => ({ ...state, meter: event.meter, next: event.next }));

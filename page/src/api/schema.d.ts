@@ -168,6 +168,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/checks/{sha256}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Check
+         * @description Each figure with its limit, its history, and what to try where it is out.
+         */
+        get: operations["check_api_v1_checks__sha256__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/compare": {
         parameters: {
             query?: never;
@@ -880,6 +900,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/verifications/{sha256}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Verification
+         * @description Each figure with its limit and verdict, as found and as left.
+         */
+        get: operations["verification_api_v1_verifications__sha256__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -985,6 +1025,20 @@ export interface components {
             reason: string;
             /** Rests On */
             rests_on: number;
+        };
+        /**
+         * Advised
+         * @description What to try where figures of a test are out.
+         */
+        Advised: {
+            /** Figures */
+            figures: string[];
+            /** Steps */
+            steps: string[];
+            /** Test */
+            test: string;
+            /** Why */
+            why: string[];
         };
         /**
          * AllAdvice
@@ -1145,6 +1199,8 @@ export interface components {
          * @description A study to a calibrated arm.
          */
         BeginCalibrate: {
+            /** Beside */
+            beside?: string[];
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -1155,6 +1211,81 @@ export interface components {
              * @description SHA-256 of a file's bytes
              */
             study: string;
+        };
+        /**
+         * BeginCertificate
+         * @description A draft of a certificate; POST /records/issue makes one that counts.
+         */
+        BeginCertificate: {
+            /**
+             * Annex
+             * @default false
+             */
+            annex: boolean;
+            /** Beside */
+            beside?: string[];
+            /**
+             * Form
+             * @default pdf
+             * @enum {string}
+             */
+            form: "pdf" | "dcc";
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "certificate";
+            /**
+             * Laboratory
+             * @description SHA-256 of a file's bytes
+             */
+            laboratory: string;
+            /**
+             * Language
+             * @default en
+             * @enum {string}
+             */
+            language: "en" | "de" | "zh";
+            /**
+             * Result
+             * @description SHA-256 of a file's bytes
+             */
+            result: string;
+            /** Verification */
+            verification?: string[];
+        };
+        /**
+         * BeginCheck
+         * @description A few touches before work, by a protocol.
+         */
+        BeginCheck: {
+            /** Arm */
+            arm?: string | null;
+            /** Beside */
+            beside?: string[];
+            /** Date */
+            date?: string | null;
+            /** History */
+            history?: string[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "check";
+            /** Of */
+            of?: string | null;
+            /** Operator */
+            operator?: string | null;
+            /**
+             * Protocol
+             * @description SHA-256 of a file's bytes
+             */
+            protocol: string;
+            /**
+             * Readings
+             * @description SHA-256 of a file's bytes
+             */
+            readings: string;
         };
         /**
          * BeginCommission
@@ -1302,6 +1433,26 @@ export interface components {
              * @description A URL (serial:, tcp:, ws:, …), or the SHA-256 of a source file or a recording of the desk.
              */
             source: string;
+        };
+        /**
+         * BeginVerify
+         * @description An acceptance test, from its verify file.
+         */
+        BeginVerify: {
+            /** Arm */
+            arm?: string | null;
+            /** Beside */
+            beside?: string[];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "verify";
+            /**
+             * Test
+             * @description SHA-256 of a file's bytes
+             */
+            test: string;
         };
         /**
          * BeginWatch
@@ -1462,6 +1613,74 @@ export interface components {
             valid_to?: string | null;
             /** Values */
             values: components["schemas"]["CertifiedAsked"][];
+        };
+        /**
+         * CheckOutcome
+         * @description What a check found.
+         */
+        CheckOutcome: {
+            /** Advice */
+            advice: components["schemas"]["Advised"][];
+            /** Arm */
+            arm: string;
+            /** At */
+            at: string;
+            /** Departures */
+            departures: string[];
+            /** Figures */
+            figures: components["schemas"]["CheckedFigure"][];
+            /** In Control */
+            in_control: boolean | null;
+            /** Operator */
+            operator: string | null;
+            /** Protocol */
+            protocol: string;
+            /** Remarks */
+            remarks: string[];
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+            /** Verdict */
+            verdict: string | null;
+        };
+        /**
+         * CheckedFigure
+         * @description A figure of one place of a check.
+         */
+        CheckedFigure: {
+            /** Average Mm */
+            average_mm: number | null;
+            /** Centre Mm */
+            centre_mm: number | null;
+            /** History */
+            history: string | null;
+            /** In Control */
+            in_control: boolean | null;
+            /** Key */
+            key: string;
+            limit: components["schemas"]["Value"] | null;
+            /** Lower Mm */
+            lower_mm: number | null;
+            /** Name */
+            name: string;
+            /** Of */
+            of: [
+                string,
+                string
+            ][];
+            /** Signals */
+            signals: string[];
+            /** Test */
+            test: string;
+            /** Upper Mm */
+            upper_mm: number | null;
+            value: components["schemas"]["Value"];
+            /** Verdict */
+            verdict: string | null;
+            /** Why */
+            why: string | null;
         };
         /**
          * ColumnSaid
@@ -1955,7 +2174,7 @@ export interface components {
          * @description What a file is, as far as Ulna knows it.
          * @enum {string}
          */
-        FileKind: "arm" | "result" | "plan" | "planned" | "study" | "source" | "protocol" | "profile" | "laboratory" | "table" | "other";
+        FileKind: "arm" | "result" | "plan" | "planned" | "study" | "source" | "protocol" | "check" | "profile" | "test" | "verification" | "laboratory" | "table" | "other";
         /**
          * FiledCalibration
          * @description A calibration of the record that counts.
@@ -3044,6 +3263,20 @@ export interface components {
             state: components["schemas"]["WatchState"] | components["schemas"]["CommissionState"] | components["schemas"]["TouchState"] | components["schemas"]["MeasureState"];
         };
         /**
+         * StateInfo
+         * @description All tests in one state of the arm.
+         */
+        StateInfo: {
+            /** Departures */
+            departures: string[];
+            /** State */
+            state: string;
+            /** Tests */
+            tests: components["schemas"]["TestedInfo"][];
+            /** Verdict */
+            verdict: string | null;
+        };
+        /**
          * Stream
          * @description A source, now.
          */
@@ -3172,6 +3405,44 @@ export interface components {
                 string,
                 string
             ][];
+        };
+        /**
+         * TestFigure
+         * @description A figure of an acceptance test: its worst value.
+         */
+        TestFigure: {
+            /** Formula */
+            formula: string;
+            /** Key */
+            key: string;
+            limit: components["schemas"]["Value"] | null;
+            /** Name */
+            name: string;
+            value: components["schemas"]["Value"];
+            /** Values */
+            values: number;
+            /** Verdict */
+            verdict: string | null;
+            /** Why */
+            why: string | null;
+        };
+        /**
+         * TestedInfo
+         * @description One test in one state of the arm.
+         */
+        TestedInfo: {
+            /** Departures */
+            departures: string[];
+            /** Figures */
+            figures: components["schemas"]["TestFigure"][];
+            /** Kind */
+            kind: string;
+            /** Readings */
+            readings: number;
+            /** Test */
+            test: string;
+            /** Verdict */
+            verdict: string | null;
         };
         /**
          * Tile
@@ -3401,6 +3672,33 @@ export interface components {
             unit: string;
             /** Value */
             value: number | null;
+        };
+        /**
+         * VerificationOutcome
+         * @description What an acceptance test found.
+         */
+        VerificationOutcome: {
+            /** Arm */
+            arm: string;
+            /** Decision */
+            decision: string;
+            /** Profile */
+            profile: string;
+            /** Remarks */
+            remarks: string[];
+            /**
+             * Sha256
+             * @description SHA-256 of a file's bytes
+             */
+            sha256: string;
+            /** Standard */
+            standard: string;
+            /** Statement */
+            statement: string;
+            /** States */
+            states: components["schemas"]["StateInfo"][];
+            /** Verdict */
+            verdict: string | null;
         };
         /**
          * Verified
@@ -4330,6 +4628,98 @@ export interface operations {
             };
         };
     };
+    check_api_v1_checks__sha256__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CheckOutcome"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
     compare_api_v1_compare_post: {
         parameters: {
             query?: never;
@@ -4987,7 +5377,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["BeginCalibrate"] | components["schemas"]["BeginReport"] | components["schemas"]["BeginPlan"];
+                "application/json": components["schemas"]["BeginCalibrate"] | components["schemas"]["BeginReport"] | components["schemas"]["BeginPlan"] | components["schemas"]["BeginCheck"] | components["schemas"]["BeginVerify"] | components["schemas"]["BeginCertificate"];
             };
         };
         responses: {
@@ -7799,6 +8189,98 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Looked"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Problem"];
+                    "application/problem+json": unknown;
+                };
+            };
+        };
+    };
+    verification_api_v1_verifications__sha256__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sha256: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VerificationOutcome"];
                 };
             };
             /** @description Bad Request */

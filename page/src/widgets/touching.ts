@@ -1,6 +1,7 @@
 /** What is to be touched next, in the words of the page; every number is the server's. */
-import type { Next, TouchState } from "../api/types";
-import type { WordKey } from "../words/words.svelte";
+import type { Next, Touch, TouchState } from "../api/types";
+import { t, type WordKey } from "../words/words.svelte";
+import { plain } from "./values";
 
 /** Clockwise, seen along the line from the shoulder to the tip. */
 export const ELBOWS: Record<string, WordKey> = {
@@ -44,4 +45,15 @@ export function placeOf(sentences: readonly string[]): { x: string; y: string; z
 export function featureOf(state: TouchState, next: Next): { now: number; all: number } | null {
 	const index = state.features.indexOf(next.feature);
 	return index < 0 || state.features.length < 2 ? null : { now: index + 1, all: state.features.length };
+}
+
+/** "Touch 33, A in place 3: spread 4.2 µm." */
+export function touchLine(touch: Touch): string {
+	const values = {
+		number: touch.number,
+		feature: touch.feature,
+		place: touch.place,
+		spread: plain(touch.spread),
+	};
+	return t(touch.feature ? "touch.taken" : "touch.taken-plain", values);
 }
