@@ -39,7 +39,7 @@ def test_from_touches_to_a_result(
     page.goto(f"{base}/collect")
     page.get_by_role("button", name="Do what is asked for").click()
     page.get_by_text(re.compile("goal .* reached|is reached|Enough")).first.wait_for()
-    page.screenshot(path=str(pictures / "collect-reached.png"), full_page=True)
+    page.screenshot(path=str(pictures / "collect.png"))
     check(page, "collect, at its goal")
     state = client.get(f"/activities/{name}")["state"]
     assert state["meter"]["u_length"]["text"] in page.locator("section.known").inner_text()
@@ -48,7 +48,7 @@ def test_from_touches_to_a_result(
     page.get_by_role("button", name=re.compile("result", re.IGNORECASE)).click()
     page.wait_for_url("**/results/*")
     page.get_by_role("heading", name="Parameters").first.wait_for()
-    page.screenshot(path=str(pictures / "results-one.png"), full_page=True)
+    page.screenshot(path=str(pictures / "results.png"))
     check(page, "results")
     sha256 = page.url.rsplit("/", 1)[1]
     bench = client.get("/about")["bench"]
