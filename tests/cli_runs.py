@@ -6,11 +6,13 @@ import json
 import os
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import polars as pl
+from tests.warm import Warm, needs_fresh
 
 from ulna.arm.arm import Arm
 from ulna.arm.joint import Joint
@@ -51,6 +53,20 @@ def write_lengths(
 
 
 def run(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The program, as a process of its own: forked from one that has imported what it needs, where nothing it is asked
+    depends on that."""
+    env = {**os.environ, "COLUMNS": "80", "TERM": "dumb", **environment}
+    warm = None if needs_fresh(env) else _warm()
+    if warm is None or not warm.busy.acquire(blocking=False):
+        return fresh(*arguments, **environment)
+    try:
+        return warm.run([*map(str, arguments)], env, 60)
+    finally:
+        warm.busy.release()
+
+
+def fresh(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The same in a process that begins with nothing: what it takes and imports is what a user's does."""
     return subprocess.run(
         [sys.executable, "-m", "ulna", *map(str, arguments)],
         capture_output=True,
@@ -59,6 +75,11 @@ def run(*arguments: str | Path, **environment: str) -> subprocess.CompletedProce
         env=os.environ | {"COLUMNS": "80", "TERM": "dumb"} | environment,
         check=False,
     )
+
+
+@cache
+def _warm() -> Warm:
+    return Warm()
 
 
 def assert_bad_input(done: subprocess.CompletedProcess[str], *expected: str) -> None:

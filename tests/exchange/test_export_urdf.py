@@ -49,13 +49,18 @@ def test_the_written_chain_is_the_arm(tmp_path: Path, name: str) -> None:
         assert np.array_equal(t_root_base, np.eye(4))
 
 
+def rounding_mm(arm: Arm) -> float:
+    """What rounding may leave: of arms that reach ten kilometres more than of others."""
+    return 1e-9 + 16.0 * np.finfo(np.float64).eps * float(arm.core.reach_mm(0))
+
+
 @given(chains)
 def test_import_export_import(tmp_path_factory: pytest.TempPathFactory, made: list[Made]) -> None:
     folder = tmp_path_factory.mktemp("urdf")
     arm, _ = arm_from_chain(read_chain(write(folder, urdf(made))))
     again, t_root_base = arm_from_chain(read_chain(write(folder, urdf_text(arm), "again.urdf")))
     q_rad = poses(arm.n, 5)
-    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
+    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < rounding_mm(arm)
     assert np.array_equal(t_root_base, np.eye(4))
     assert [joint.model for joint in again.joints] == [joint.model for joint in arm.joints]
 
@@ -67,8 +72,8 @@ def test_slides_come_back_too(tmp_path_factory: pytest.TempPathFactory, made: li
     path = write(folder, urdf_text(arm), "again.urdf")
     again, _ = arm_from_chain(read_chain(path, "ball"))
     q_rad = np.where(arm.slides, 100.0, 1.0) * poses(arm.n, 5)
-    assert np.abs(drawn_tips(path, "ball", q_rad) - arm.tip(q_rad)).max() < 1e-9
-    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < 1e-9
+    assert np.abs(drawn_tips(path, "ball", q_rad) - arm.tip(q_rad)).max() < rounding_mm(arm)
+    assert np.abs(again.tip(q_rad) - arm.tip(q_rad)).max() < rounding_mm(arm)
     for one, other in zip(arm.joints, again.joints, strict=True):
         assert one.type == other.type
         assert one.limits_rad == (other.limits_rad and pytest.approx(other.limits_rad))

@@ -1821,11 +1821,13 @@ export interface components {
         };
         /**
          * DoGo
-         * @description The virtual arm goes to a posture.
+         * @description The virtual arm goes to a posture, in place of all that it was told before; then to others, one after another.
          */
         DoGo: {
             /** Q Deg */
             q_deg: number[];
+            /** Then Deg */
+            then_deg?: number[][];
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}
@@ -2937,6 +2939,10 @@ export interface components {
              * @description SHA-256 of a file's bytes
              */
             arm: string;
+            /** Goal Mm */
+            goal_mm: number;
+            /** Length Mm */
+            length_mm: number;
             /**
              * Plan
              * @description SHA-256 of a file's bytes

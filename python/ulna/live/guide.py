@@ -36,8 +36,10 @@ TOUCHES = 20_000
 """Of all candidates in new places, together."""
 IN_A_PLACE = 6
 """Touches that a new place is judged by."""
-MOST_HERE = 12
-"""Touches in one place, then the artefact is moved: it may have moved by itself."""
+MOST_HERE = 16
+"""Touches in one place, then the artefact is moved: it may have moved by itself. The 25 unknowns of an arm and 5 of a
+place take ten touches before one can contradict the others; six more can tell that it moved, as many as judge a place.
+To leave earlier pays for the next place, two touches and a minute, while a touch more here still tells much."""
 WORTH_MOVING = 1.2
 """A new place must be worth so many times more, a touch: moving takes a minute."""
 LOOKED_AHEAD = 300

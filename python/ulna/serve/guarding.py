@@ -9,7 +9,7 @@ from __future__ import annotations
 import hmac
 import secrets
 import time
-from collections.abc import Awaitable, Callable, MutableMapping
+from collections.abc import Awaitable, Callable, Mapping, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 
@@ -22,7 +22,6 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
-COOKIE = "ulna-session"
 SESSION_S = 12 * 3600.0
 MOST_BODY, MOST_WORDS = 300 << 20, 1 << 20
 """Bytes that are taken: of a file, and of all else, also where nobody said before how many come."""
@@ -51,8 +50,10 @@ HEADERS = (
 class Guests:
     """Who is signed in: by a token that is known to whoever started the server, then by a cookie."""
 
-    def __init__(self, token: str | None = None) -> None:
+    def __init__(self, port: int, token: str | None = None) -> None:
+        """port: where the server listens; a browser's cookies do not know it, and two servers must not share one."""
         self.token = token or secrets.token_urlsafe(24)
+        self.cookie_name = f"ulna-session-{port}"
         self._until: dict[str, float] = {}
 
     def enter(self, token: str) -> str | None:
@@ -67,6 +68,14 @@ class Guests:
 
     def leave(self, cookie: str) -> None:
         self._until.pop(cookie, None)
+
+    def cookie_of(self, headers: Mapping[str, str]) -> str | None:
+        """What a client carries."""
+        try:
+            found = SimpleCookie(headers.get("cookie", "")).get(self.cookie_name)
+        except CookieError:
+            return None
+        return None if found is None else found.value
 
     def known(self, cookie: str | None) -> bool:
         """Whether somebody is signed in by it."""
@@ -103,7 +112,7 @@ class Guard:
         said = headers.get("content-length", "0")
         if said.isdigit() and int(said) > _most(path):
             return 413, f"{said} bytes; expected {_most(path)} at most. Cut it."
-        if path.startswith("/api/") and path not in OPEN and not self._guests.known(cookie_of(headers)):
+        if path.startswith("/api/") and path not in OPEN and not self._guests.known(self._guests.cookie_of(headers)):
             return 401, "Open the address that `ulna workbench` printed."
         return None
 
@@ -124,15 +133,6 @@ def _limited(receive: Receive, scope: Scope) -> Receive:
         return message
 
     return received
-
-
-def cookie_of(headers: MutableMapping[str, str] | Any) -> str | None:
-    """What a client carries."""
-    try:
-        found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
-    except CookieError:
-        return None
-    return None if found is None else found.value
 
 
 def _with_headers(send: Send, path: str) -> Send:

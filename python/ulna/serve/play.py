@@ -17,6 +17,8 @@ OFF_MM, OFF_RAD = 0.2, 0.0015
 HELD = ("joint.1.theta0", "joint.1.d")
 """The base frame: what no reading tells."""
 SEED = 2011
+GOAL_MM, LENGTH_MM = 0.06, 500.0
+"""Of U, which a dozen touches come to."""
 TRAVEL = ((-3.14, 3.14), (0.49, 3.49), (-3.14, 3.14), (0.58, 3.58), (-3.14, 3.14), (0.56, 3.56), (-3.14, 3.14))
 PLAN = f"""# A bar with two seats, to be touched by the virtual arm.
 format = "ulna-plan/1"
@@ -36,7 +38,7 @@ limits = [{", ".join(f"[{low}, {high}]" for low, high in TRAVEL)}]
 [plan]
 choose = 100
 criterion = "length"
-test_length = 500.0
+test_length = {LENGTH_MM}
 """
 
 
@@ -47,7 +49,7 @@ def play(desk: Desk) -> Play:
     true = desk.put("virtual-platinum.toml", arm_toml(_truth(drawing)).encode())
     plan = desk.put("bar-plan.toml", PLAN.encode())
     source = f"virtual:{true.sha256}?moves=told&noise={ENCODER_RAD}&rate=500&hand=1.5"
-    return Play(arm=drawn.sha256, plan=plan.sha256, source=source)
+    return Play(arm=drawn.sha256, plan=plan.sha256, source=source, goal_mm=GOAL_MM, length_mm=LENGTH_MM)
 
 
 def _truth(drawing: Arm) -> Arm:

@@ -35,7 +35,8 @@ def serve(folder: Path, port: int | None, by: str | None, ready: Callable[[str],
 
 def server_of(workshop: Workshop, listening: socket.socket, ready: Callable[[str], None]) -> uvicorn.Server:
     """What answers for a bench at an open port; its `run` returns once `should_exit` is set, or at Ctrl-C."""
-    own, guests = listening.getsockname()[1], Guests()
+    own = listening.getsockname()[1]
+    guests = Guests(own)
     config = uvicorn.Config(
         make_app(workshop, guests, frozenset(f"{name}:{own}" for name in NAMES)),
         log_level="warning",

@@ -46,11 +46,6 @@ pub(super) fn product_transposed(a: &[f64], b: &[f64], width: usize) -> Vec<f64>
 /// The lower Cholesky factor of a small matrix; none where it is not positive definite.
 pub(super) fn cholesky(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut l = matrix.to_vec();
-    cholesky_in_place(&mut l, n).then_some(l)
-}
-
-/// The same in place, of which only the lower triangle is read; whether it is positive definite.
-pub(super) fn cholesky_in_place(l: &mut [f64], n: usize) -> bool {
     for j in 0..n {
         for i in j..n {
             let dot: f64 = (0..j).map(|k| l[i * n + k] * l[j * n + k]).sum();
@@ -61,16 +56,16 @@ pub(super) fn cholesky_in_place(l: &mut [f64], n: usize) -> bool {
             } else if value > LEAST_PIVOT * given.abs() {
                 l[j * n + j] = value.sqrt();
             } else {
-                return false;
+                return None;
             }
         }
         l[j * n + j + 1..(j + 1) * n].fill(0.0);
     }
-    true
+    Some(l)
 }
 
 /// A pivot below this part of the diagonal is rounding: the information has no inverse.
-const LEAST_PIVOT: f64 = 1e-11;
+pub(super) const LEAST_PIVOT: f64 = 1e-11;
 
 /// `L⁻¹ B` in place, B row-major of `width` columns.
 pub(super) fn solve_lower(l: &[f64], n: usize, b: &mut [f64], width: usize) {

@@ -1,21 +1,26 @@
 //! What one more measurement would be worth, of very many at once.
 
-use super::blocks::{Candidates, cholesky_in_place, dot, solve_lower};
+use super::abreast::{Abreast, Question};
+use super::blocks::Candidates;
 use crate::error::{Error, Result};
+use crate::simd::PAD;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use rayon::prelude::*;
 
-/// Blocks worked on together: their rows and products stay in the cache.
-const TOGETHER: usize = 256;
+/// Candidates that one thread takes: a whole number of vectors.
+const TOGETHER: usize = 16 * PAD;
+/// Directions whose singular value is below this part of the largest add less than rounding to a mean of squares.
+const UNSEEN: f64 = 1e-9;
 
 /// By how much each candidate would lower the mean variance of what is asked for, given what is known: with `RᵀR` the
 /// information at hand, `F` the directions asked for (rows of as many numbers as there are unknowns) and a candidate's rows `Z`,
 ///
 /// `tr((I + W Wᵀ)⁻¹ W HᵀH Wᵀ) / rows of F`, where `W = Z R⁻¹` and `H = F R⁻¹`.
 ///
-/// Only the triangle is ever solved with, the information is never formed; nor is `HᵀH`, in whose place its triangle `T`
-/// stands: with `L Lᵀ = I + W Wᵀ` a gain is the sum of the squares of `L⁻¹ W Tᵀ`. `triangle` is row-major and upper.
+/// Only the triangle is ever solved with, the information is never formed; nor is `HᵀH`. An orthogonal matrix behind `R⁻¹`
+/// changes nothing of this, so the unknowns are turned by the `V` of `H = U S Vᵀ`: with `W = Z R⁻¹ V`, the one product that a
+/// candidate needs, and `L Lᵀ = I + W Wᵀ` a gain is the sum of the squares of `L⁻¹ W S`. `triangle` is row-major and upper.
 ///
 /// # Errors
 /// Shapes that do not agree, numbers that are not finite, a triangle that has a zero on its diagonal.
@@ -25,56 +30,29 @@ pub fn gains(candidates: &Candidates, triangle: &[f64], directions: &[f64]) -> R
     let inverse = inverse_upper(triangle, n);
     let asked = directions.len() / n;
     let of_asked = product(MatRef::from_row_major_slice(directions, asked, n), inverse.as_ref());
-    let least = of_asked.qr().thin_R().to_owned();
-    // both products at once: R⁻ᵀ, and T R⁻ᵀ below it
-    let height = n + least.nrows();
-    let below = product(least.as_ref(), inverse.transpose());
-    let both = Mat::from_fn(height, n, |i, j| if i < n { inverse[(j, i)] } else { below[(i - n, j)] });
+    let Ok(turned) = of_asked.qr().thin_R().svd() else {
+        return Err(not_finite(&[f64::INFINITY]));
+    };
+    let size = turned.S().column_vector();
+    let seen = (0..size.nrows()).take_while(|&k| size[k] > UNSEEN * size[0]);
+    let map = product(inverse.as_ref(), turned.V());
+    let question = Question::new(each, n, |i, j| map[(i, j)], seen.map(|k| size[k]).collect());
     let mut gains = vec![0.0; candidates.count()];
     let together = candidates.rows.par_chunks(TOGETHER * each * n).zip(gains.par_chunks_mut(TOGETHER));
     let finite = together
-        .map(|(rows, gains)| {
-            // a row of a candidate is a column here, so that its numbers stand together
-            let found = product(both.as_ref(), MatRef::from_column_major_slice(rows, n, rows.len() / n));
-            let mut here =
-                Here { found: &found, n, inner: vec![0.0; each * each], told: vec![0.0; each * (height - n)] };
-            gains.iter_mut().enumerate().for_each(|(k, gain)| *gain = here.gain(k * each, each) / asked as f64);
-            rows.iter().all(|value| value.is_finite())
-        })
+        .map_init(
+            || Abreast::new(&question),
+            |abreast, (rows, gains)| {
+                let some = rows.chunks(PAD * each * n).zip(gains.chunks_mut(PAD));
+                some.fold(true, |finite, (rows, gains)| abreast.gains(rows, gains) & finite)
+            },
+        )
         .reduce(|| true, |a, b| a & b);
-    if finite { Ok(gains) } else { Err(not_finite(candidates.rows)) }
-}
-
-/// The products of some candidates, and room to work in.
-struct Here<'a> {
-    /// A column for each row of a candidate: of `Wᵀ`, and of `T Wᵀ` below it.
-    found: &'a Mat<f64>,
-    n: usize,
-    /// `I + W Wᵀ`, then its factor.
-    inner: Vec<f64>,
-    /// `W Tᵀ`, then `L⁻¹ W Tᵀ`.
-    told: Vec<f64>,
-}
-
-impl Here<'_> {
-    /// The gain, times the rows of F, of the candidate whose rows begin at `first`.
-    fn gain(&mut self, first: usize, each: usize) -> f64 {
-        let width = self.told.len() / each;
-        for i in 0..each {
-            let (seen, told) = self.found.col_as_slice(first + i).split_at(self.n);
-            self.told[i * width..(i + 1) * width].copy_from_slice(told);
-            for j in 0..=i {
-                let other = &self.found.col_as_slice(first + j)[..self.n];
-                self.inner[i * each + j] = dot(seen, other) + if i == j { 1.0 } else { 0.0 };
-            }
-        }
-        // I + W Wᵀ is positive definite whatever W is
-        if !cholesky_in_place(&mut self.inner, each) {
-            return 0.0;
-        }
-        solve_lower(&self.inner, each, &mut self.told, width);
-        dot(&self.told, &self.told)
+    if !finite {
+        return Err(not_finite(candidates.rows));
     }
+    gains.iter_mut().for_each(|gain| *gain /= asked as f64);
+    Ok(gains)
 }
 
 fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
@@ -152,23 +130,24 @@ mod tests {
                 }
             })
             .collect();
-        let directions = some(7 * n, 2.1);
         let at_hand = information(&triangle, n);
-        let mean = |m: &[f64]| {
-            let c = inverse(m, n).unwrap();
-            let variance = |f: &[f64]| -> f64 { (0..n * n).map(|k| f[k / n] * c[k] * f[k % n]).sum() };
-            directions.chunks_exact(n).map(variance).sum::<f64>() / 7.0
-        };
-        for each in 1..4 {
-            let rows = some(600 * each * n, 0.9);
+        // fewer directions than unknowns and more, each number of rows that tiles differ by, and a vector that is not full
+        for (asked, each) in (1..10).map(|each| (7, each)).chain([(2, 3), (1, 13)]) {
+            let directions = some(asked * n, 2.1);
+            let mean = |m: &[f64]| {
+                let c = inverse(m, n).unwrap();
+                let variance = |f: &[f64]| -> f64 { (0..n * n).map(|k| f[k / n] * c[k] * f[k % n]).sum() };
+                directions.chunks_exact(n).map(variance).sum::<f64>() / asked as f64
+            };
+            let rows = some(603 * each * n, 0.9);
             let candidates = Candidates { rows: &rows, each, unknowns: n };
             let found = gains(&candidates, &triangle, &directions).unwrap();
-            assert_eq!(found.len(), 600);
+            assert_eq!(found.len(), 603);
             for (k, gain) in found.iter().enumerate() {
                 let with: Vec<f64> =
                     information(candidates.block(k), n).iter().zip(&at_hand).map(|(a, b)| a + b).collect();
                 let expected = mean(&at_hand) - mean(&with);
-                assert!((gain - expected).abs() < 1e-11 * mean(&at_hand), "{gain} {expected}");
+                assert!((gain - expected).abs() < 1e-11 * mean(&at_hand), "{each}: {gain} {expected}");
             }
         }
     }

@@ -7,6 +7,7 @@
 //! add to the set as it is; then, one after the other, each chosen one gives way to the best of the shortlist, the inverse
 //! of the information following by updates of rank k; until a whole round changes nothing.
 
+mod abreast;
 mod blocks;
 mod criterion;
 mod exchange;

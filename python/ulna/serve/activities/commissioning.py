@@ -83,7 +83,7 @@ class Commissioning(Doing):
                 if self._work.step is None:
                     yield SaidEvent(sentence="All is found: end it, and the files are written.")
             case DoGo():
-                steer(virtual_of(self.stream.source), asked.q_deg)
+                steer(virtual_of(self.stream.source), asked)
             case _:
                 raise unknown(asked, self.kind)
 

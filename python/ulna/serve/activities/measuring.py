@@ -72,7 +72,7 @@ class Measuring(Doing):
             case DoTrust():
                 self.out.trust()
             case DoGo():
-                steer(virtual_of(self.stream.source), asked.q_deg)
+                steer(virtual_of(self.stream.source), asked)
                 return
             case _:
                 raise unknown(asked, self.kind)

@@ -83,7 +83,7 @@ class Touching(Doing):
                 yield SaidEvent(sentence="The angles are taken for right again.")
             case DoGo():
                 self._follows = False
-                steer(self.virtual, asked.q_deg)
+                steer(self.virtual, asked)
             case DoFollow():
                 if asked.follows and self._player is None:
                     self._player = Player(self.virtual, session.spec)
@@ -203,8 +203,13 @@ def virtual_of(source: object) -> VirtualSource:
     return source
 
 
-def steer(source: VirtualSource, q_deg: list[float]) -> None:
-    """A virtual arm goes to a posture. Raises UlnaInputError for one of another arm."""
-    if len(q_deg) != source.arm.n:
-        raise UlnaInputError(f"q_deg: got {len(q_deg)} angles; expected {source.arm.n}. Give one for each joint.")
-    source.steer(from_degrees(source.arm, q_deg))
+def steer(source: VirtualSource, asked: DoGo) -> None:
+    """A virtual arm goes where it is told. Raises UlnaInputError for a posture of another arm."""
+    postures = [asked.q_deg, *asked.then_deg]
+    for q_deg in postures:
+        if len(q_deg) != source.arm.n:
+            raise UlnaInputError(f"q_deg: got {len(q_deg)} angles; expected {source.arm.n}. Give one for each joint.")
+    first, *others = (from_degrees(source.arm, q_deg) for q_deg in postures)
+    source.steer(first)
+    for each in others:
+        source.go_to(each)

@@ -40,3 +40,7 @@ class Play(Said):
     arm: Sha256
     plan: Sha256
     source: str
+    goal_mm: float
+    """U (k = 2) of a length that it can be touched to in a few minutes."""
+    length_mm: float
+    """That length."""

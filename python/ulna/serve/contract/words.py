@@ -56,10 +56,13 @@ class DoTakeBack(Asked):
 
 
 class DoGo(Asked):
-    """The virtual arm goes to a posture."""
+    """The virtual arm goes to a posture, in place of all that it was told before; then to others, one after another."""
 
     word: Literal["go"]
     q_deg: Annotated[list[float], Field(min_length=1, max_length=16)]
+    then_deg: Annotated[list[Annotated[list[float], Field(min_length=1, max_length=16)]], Field(max_length=100)] = (
+        Field(default_factory=list)
+    )
 
 
 class DoFollow(Asked):

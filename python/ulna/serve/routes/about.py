@@ -7,7 +7,7 @@ from fastapi import APIRouter, HTTPException, Request, Response
 from ulna.documents.languages.languages import LANGUAGES
 from ulna.ground.version import VERSION
 from ulna.serve.contract.about import About, Login, Me, Play
-from ulna.serve.guarding import COOKIE, SESSION_S, Guests, cookie_of
+from ulna.serve.guarding import SESSION_S, Guests
 from ulna.serve.play import play
 from ulna.serve.routes.common import workshop
 
@@ -35,17 +35,19 @@ def login(request: Request, response: Response, asked: Login) -> Me:
     cookie = guests.enter(asked.token)
     if cookie is None:
         raise HTTPException(401, "token: it is not this server's. Open the address that `ulna workbench` printed.")
-    response.set_cookie(COOKIE, cookie, max_age=int(SESSION_S), httponly=True, samesite="strict", path="/")
+    age_s, name = int(SESSION_S), guests.cookie_name
+    response.set_cookie(name, cookie, max_age=age_s, httponly=True, samesite="strict", path="/")
     return _me(request)
 
 
 @router.post("/logout", status_code=204)
 def logout(request: Request, response: Response) -> None:
     """This browser's cookie is worth nothing any more."""
-    cookie = cookie_of(request.headers)
+    guests: Guests = request.app.state.guests
+    cookie = guests.cookie_of(request.headers)
     if cookie is not None:
-        request.app.state.guests.leave(cookie)
-    response.delete_cookie(COOKIE, path="/")
+        guests.leave(cookie)
+    response.delete_cookie(guests.cookie_name, path="/")
 
 
 @router.get("/me")
