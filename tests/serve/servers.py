@@ -90,7 +90,9 @@ class Client:
         path = "/api/v1/live" + ("" if activity is None else f"?activity={activity}")
         headers = {"Cookie": self.cookie} | more.pop("headers", {})
         origin = more.pop("origin", self.base)
-        return connect(self.base.replace("http", "ws") + path, origin=origin, additional_headers=headers, **more)
+        url = self.base.replace("http", "ws") + path
+        # whoever leaves with messages unread does not wait for the other side's goodbye behind them
+        return connect(url, origin=origin, additional_headers=headers, close_timeout=0.1, **more)
 
     def raw(self, method: str, target: str, headers: dict[str, str] | None = None) -> http.client.HTTPResponse:
         """A request whose path no library tidies up."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from hashlib import sha256
 from pathlib import Path
@@ -79,6 +80,26 @@ def test_an_arm_and_its_picture(client: Client, play: dict[str, str]) -> None:
     assert "q_deg" in client.refused(400, "POST", f"/arms/{play['arm']}/bodies", json={"q_deg": [1.0]})
     assert client.refused(400, "GET", f"/arms/{play['plan']}")
     client.refused(400, "GET", f"/arms/{play['arm']}", params={"probe": SCRIPT})
+
+
+@pytest.mark.parametrize(
+    ("keys", "value"),
+    [(("arm", "name"), "x" * 300), (("arm", "name"), ""), (("fit", "termination"), "y" * 5000),
+     (("residuals", 0, "row"), None), (("provenance", "time"), 7), (("fit", "readings"), [])],
+)  # fmt: skip
+def test_a_result_that_somebody_spoilt_spoils_nothing_else(
+    client: Client, root: Path, keys: tuple[str | int, ...], value: object
+) -> None:
+    document = json.loads((root / "tests" / "data" / "fossils" / "result-1.json").read_text())
+    place = document
+    for key in keys[:-1]:
+        place = place[key]
+    place[keys[-1]] = value
+    content = json.dumps(document).encode()
+    sha256 = client.ask("POST", "/files", params={"name": "result.json"}, content=content).json()["sha256"]
+    assert client.ask("GET", "/arms").status_code == 200
+    for path in (f"/arms/{sha256}", f"/results/{sha256}"):
+        assert client.ask("GET", path).status_code in (200, 400)
 
 
 def test_a_report_that_was_brought_is_never_shown(client: Client) -> None:

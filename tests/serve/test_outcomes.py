@@ -59,13 +59,14 @@ def test_a_check_and_its_history(client: Client, protocol: dict[str, object], tm
     for k, morning in enumerate(MORNINGS):
         date = f"2026-11-{k + 1:02}T08:00:00+00:00"
         body = {**protocol, "readings": client.bring(morning), "date": date, "operator": "Ann"}
-        made = client.made({**body, **({"history": earlier} if k else {})})
-        history = ["--history", tmp_path / "checks"] if k else []
-        out = tmp_path / "checks" / f"{k}.json"
-        out.parent.mkdir(exist_ok=True)
-        done = run("check", PLATINUM / "protocol.toml", morning, *history, "--date", date, "-o", out)
-        assert done.returncode in (0, 1), done.stderr
-        earlier.append(made["check"])
+        earlier.append(client.made({**body, **({"history": list(earlier)} if k else {})})["check"])
+    checks, out = tmp_path / "checks", tmp_path / "last.json"
+    checks.mkdir()
+    for k, sha256 in enumerate(earlier[:-1]):
+        (checks / f"{k}.json").write_bytes(client.ask("GET", f"/files/{sha256}/content").content)
+    options = ["--history", checks, "--date", date, "-o", out]
+    done = run("check", PLATINUM / "protocol.toml", MORNINGS[-1], *options)
+    assert done.returncode in (0, 1), done.stderr
     found, theirs = client.get(f"/checks/{earlier[-1]}"), json.loads(out.read_text())
     assert (found["verdict"], found["in_control"]) == (theirs["verdict"], theirs["in_control"])
     assert found["operator"] == "Ann"

@@ -90,7 +90,9 @@ def test_what_cannot_be_planned_leaves_nothing(
 
 @pytest.mark.slow
 def test_planned_as_the_command_plans(client: Client, server: Threaded, play: dict[str, str], tmp_path: Path) -> None:
-    plan = client.post("/plans", asked(play, {"kind": "bar", "length_mm": 443.172}))["file"]["sha256"]
+    text = client.post("/plans", asked(play, {"kind": "bar", "length_mm": 443.172}))["text"]
+    few = text.replace("[plan]", "[plan]\ncandidates = 3000").encode()
+    plan = client.ask("POST", "/files", params={"name": "few.toml"}, content=few).json()["sha256"]
     made = client.made({"kind": "plan", "arm": play["arm"], "plan": plan, "language": "de"})
     assert set(made) == {"planned", "study", "arm", "table", "work-sheet"}
     found = client.get(f"/plans/{made['planned']}/outcome")

@@ -109,7 +109,7 @@ def test_what_is_wrong_with_which_cell(client: Client, kept: Kept, tmp_path: Pat
         ("a.csv", b"\x00\x01\x02", ""),
         ("a.xlsx", b"PK\x03\x04broken", ""),
         ("a.parquet", b"PAR1", ""),
-        ("<script>.csv", b"q1,q2\n1,2\n", "script"),
+        ("<script>.csv", b"q1,q2\n1,2.5\n", "script"),
     ],
 )
 def test_what_is_no_table(client: Client, name: str, content: bytes, said: str) -> None:

@@ -92,7 +92,7 @@ class ArmInfo(Said):
     """An arm of the desk."""
 
     sha256: Sha256
-    name: Name
+    name: str
     file: Name
     joints: list[Joint]
     probes: list[str]

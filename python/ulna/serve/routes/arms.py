@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from fastapi import APIRouter, Request
 
 from ulna.arm.arm import Arm
 from ulna.arm.given import as_arm
+from ulna.calibration.result import Result
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.live.sources.virtual import UNSAID_RAD
@@ -26,7 +27,7 @@ from ulna.serve.routes.common import Digest, workshop
 from ulna.serve.texts import valued
 
 router = APIRouter(prefix="/arms", tags=["arms"])
-KEPT = 32
+KEPT, LONGEST = 32, 1000
 Status = Literal["drawing", "fitted", "held", "not determined"]
 
 
@@ -34,7 +35,11 @@ Status = Literal["drawing", "fitted", "held", "not determined"]
 def arms(request: Request) -> wire.Arms:
     """All of them, the newest first; what cannot be used is left to the list of files."""
     desk = workshop(request).desk
-    return wire.Arms(arms=[_info(desk, each.sha256) for each in desk.all(FileKind.ARM, FileKind.RESULT)])
+    found = []
+    for each in desk.all(FileKind.ARM, FileKind.RESULT):
+        with suppress(UlnaInputError):
+            found.append(_info(desk, each.sha256))
+    return wire.Arms(arms=found)
 
 
 @router.get("/{sha256}")
@@ -68,7 +73,7 @@ def _info(desk: Desk, sha256: str) -> wire.ArmInfo:
     file, found = desk.info(sha256), _arm(desk, sha256)
     return wire.ArmInfo(
         sha256=sha256,
-        name=found.name,
+        name=found.name[:LONGEST],
         file=file.name,
         joints=_joints(found),
         probes=list(found.probes),
@@ -78,13 +83,13 @@ def _info(desk: Desk, sha256: str) -> wire.ArmInfo:
 
 @lru_cache(maxsize=KEPT)
 def _calibration(path: Path, sha256: str) -> wire.Calibration:
-    document: dict[str, Any] = json.loads(path.read_bytes())
-    fit = document["fit"]
+    found = Result.load(path)
+    at = found.provenance.get("time")
     return wire.Calibration(
-        at=document["provenance"]["time"],
-        converged=bool(fit["converged"]),
-        verdict=str(fit["termination"]),
-        readings=int(fit["readings"]),
+        at=at if isinstance(at, str) else None,
+        converged=found.fit.converged,
+        verdict=found.fit.termination[:LONGEST],
+        readings=found.fit.readings,
         u_length=None,
     )
 

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Request
 
 from ulna.calibration.result import Result
 from ulna.documents.gather import gather
+from ulna.ground.errors import UlnaInputError
 from ulna.live.judging import FOLDER
 from ulna.serve.contract import results as wire
 from ulna.serve.routes.common import Digest, workshop
@@ -32,11 +33,16 @@ def result(request: Request, sha256: Digest, language: Literal["en", "de", "zh"]
         converged=found.fit.converged,
         ending=found.fit.termination,
         sections=sections(content, language),
-        residuals=_residuals(found.residuals),
+        residuals=_residuals(found.residuals, path.name),
     )
 
 
-def _residuals(table: pl.DataFrame) -> list[wire.Residual]:
+def _residuals(table: pl.DataFrame, name: str) -> list[wire.Residual]:
+    for key in ("row", "artefact", "placement"):
+        if key not in table.columns or table[key].null_count():
+            raise UlnaInputError(
+                f"{name}: a reading among its residuals has no '{key}'; expected one. Calibrate again."
+            )
     rows = table.sort("norm_mm", descending=True, nulls_last=True).head(MOST).to_dicts()
     return [
         wire.Residual(
