@@ -76,3 +76,19 @@ def test_one_that_fails_stops_no_other(
     assert (job["state"], job["problem"]["status"]) == ("failed", status)
     assert said in job["problem"]["detail"]
     wait_for(lambda: client.get("/jobs")["jobs"][0]["state"] == "done", "the last")
+
+
+def test_one_that_says_much_floods_nobody(server: Threaded, client: Client) -> None:
+    def work(progress: Progress) -> Made:
+        for k in range(5000):
+            progress("counting", k + 1, 5000)
+        return Made([], ["done counting"])
+
+    with client.socket() as socket:
+        job = server.workshop.jobs.begin("calibrate", "counts", work)
+        told = events(
+            socket,
+            lambda event: event["event"] == "job" and event["job"]["id"] == job.id and event["job"]["done"] == 5000,
+        )
+    assert len(told) < 1000
+    assert client.waited(job.id)["said"] == ["done counting"]

@@ -127,9 +127,16 @@ def test_a_draft_and_a_certificate(client: Client, calibrated: str) -> None:
     second = client.post("/records/issue", {**again, "reason": "the customer moved", "form": "pdf"})
     paper = Pdf(client.ask("GET", f"/files/{second['sha256']}/content").content)
     holds(paper, second["number"], second["head"])
+    stated = (PLATINUM / "laboratory.toml").read_text().replace("[laboratory]", '[laboratory]\nlogo = "lab-1.svg"')
+    drawn = client.ask("POST", "/files", params={"name": "lab.toml"}, content=stated.encode()).json()["sha256"]
+    lonely = {**asked, "laboratory": drawn, "form": "pdf"}
+    assert "lab-1.svg" in client.refused(400, "POST", "/records/issue", json=lonely)
+    third = client.post("/records/issue", {**lonely, "beside": [client.bring(FOSSILS / "lab-1.svg")]})
+    client.post("/records/withdraw", {"subject": third["number"], "reason": "tried"})
     client.post("/records/withdraw", {"subject": second["number"], "reason": "wrong serial"})
     listed = client.get("/records/certificates", arm=arm)["certificates"]
     assert [(each["number"], each["state"]) for each in listed] == [
+        (third["number"], "withdrawn"),
         (second["number"], "withdrawn"),
         (first["number"], "superseded"),
     ]

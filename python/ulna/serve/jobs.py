@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 import secrets
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +21,7 @@ from ulna.serve.problems import FAULT, NotThereError, problem, status_of, withou
 
 KEPT = 100
 TOLD_S = 0.1
+"""How often it is told how far one is: whoever listens is not flooded."""
 
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
 Progress = Callable[[str, int, int], None]
@@ -129,11 +131,17 @@ class Jobs:
             self._do(job)
 
     def _do(self, job: _Job) -> None:
+        told_s = 0.0
+
         def progress(stage: str, done: int, total: int) -> None:
+            nonlocal told_s
             if job.cancelled.is_set():
                 raise CancelledError
             job.stage, job.done, job.total = stage, done, total
-            self._tell(job)
+            now_s = time.monotonic()
+            if now_s - told_s >= TOLD_S:
+                told_s = now_s
+                self._tell(job)
 
         try:
             if job.cancelled.is_set():

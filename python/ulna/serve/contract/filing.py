@@ -108,6 +108,8 @@ class IssueAsked(Asked):
     """Its SHA-256; or an arm, whose last calibration is meant."""
     laboratory: Sha256
     """A laboratory file of the desk."""
+    beside: Annotated[list[Sha256], Field(max_length=20, default_factory=list)]
+    """What it names: its logo."""
     verification: Annotated[list[Sha256], Field(max_length=20, default_factory=list)]
     """Filed tests."""
     number: Name | None = None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 
 from ulna.serve import recorded
-from ulna.serve.beside import usable
+from ulna.serve.beside import together
 from ulna.serve.contract import filing as wire
 from ulna.serve.contract.records import AllDue, DueInfo
 from ulna.serve.routes.common import workshop
@@ -101,16 +103,17 @@ def certificates(
 def issue(request: Request, asked: wire.IssueAsked) -> wire.IssuedNow:
     """A certificate with its number and the record's head on it, entered and on the desk; or nothing of it."""
     here = workshop(request)
-    found = here.records.issue(
-        asked.result,
-        usable(here.desk, asked.laboratory),
-        verification=asked.verification,
-        number=asked.number,
-        form=asked.form,
-        language=asked.language,
-        approved_by=asked.approved_by,
-        supersedes=asked.supersedes,
-        reason=asked.reason,
-    )
+    with TemporaryDirectory(prefix="ulna-") as folder:
+        found = here.records.issue(
+            asked.result,
+            together(here.desk, Path(folder), asked.laboratory, asked.beside),
+            verification=asked.verification,
+            number=asked.number,
+            form=asked.form,
+            language=asked.language,
+            approved_by=asked.approved_by,
+            supersedes=asked.supersedes,
+            reason=asked.reason,
+        )
     info = here.desk.put(f"{found.number}.{ENDINGS[asked.form]}", found.content)
     return wire.IssuedNow(number=found.number, arm=found.arm, sha256=info.sha256, name=info.name, head=found.head)

@@ -31,7 +31,7 @@ def result(request: Request, sha256: Digest, language: Literal["en", "de", "zh"]
         sha256=sha256,
         arm=found.arm.name,
         converged=found.fit.converged,
-        ending=found.fit.termination,
+        ending=found.fit.termination[:4000],
         sections=sections(content, language),
         residuals=_residuals(found.residuals, path.name),
     )
