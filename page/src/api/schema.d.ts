@@ -2352,6 +2352,8 @@ export interface components {
         IssueAsked: {
             /** Approved By */
             approved_by?: string | null;
+            /** Beside */
+            beside?: string[];
             /**
              * Form
              * @default pdf
