@@ -70,6 +70,7 @@ def test_filed_compared_issued_and_withdrawn(
     issue.click()
     page.get_by_text(re.compile("is issued")).wait_for()
     check(page, "a certificate")
+    page.evaluate("scrollTo(0, 0)")
     page.screenshot(path=str(pictures / "certificate.png"))
     (certificate,) = client.get("/records/certificates")["certificates"]
     content = client.ask("GET", f"/files/{certificate['sha256']}/content").content

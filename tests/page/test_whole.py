@@ -39,6 +39,7 @@ def test_from_touches_to_a_result(
     page.goto(f"{base}/collect")
     page.get_by_role("button", name="Do what is asked for").click()
     page.get_by_text(re.compile("goal .* reached|is reached|Enough")).first.wait_for()
+    page.evaluate("scrollTo(0, 0)")
     page.screenshot(path=str(pictures / "collect.png"))
     check(page, "collect, at its goal")
     state = client.get(f"/activities/{name}")["state"]
@@ -48,6 +49,7 @@ def test_from_touches_to_a_result(
     page.get_by_role("button", name=re.compile("result", re.IGNORECASE)).click()
     page.wait_for_url("**/results/*")
     page.get_by_role("heading", name="Parameters").first.wait_for()
+    page.evaluate("scrollTo(0, 0)")
     page.screenshot(path=str(pictures / "results.png"))
     check(page, "results")
     sha256 = page.url.rsplit("/", 1)[1]
