@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import ROOT
 from tests.page.conftest import AXE, NARROW, WIDE
 from tests.real_parts import lacking
-from tests.serve.servers import Process
+from tests.serve.servers import Client, Process
 
 SCREENS = re.findall(r'path: "(/[^"]*)"', (ROOT / "page" / "src" / "screens.ts").read_text(encoding="utf-8"))
 LOOKS = {
@@ -36,6 +36,12 @@ OVERFLOWS = """() => [...document.querySelectorAll("body *")].filter(e => {
 def test_there_is_a_screen() -> None:
     assert "/" in SCREENS
     assert "/collect" in SCREENS
+
+
+def test_licences_of_what_is_shipped_are_listed(client: Client) -> None:
+    said = client.http.get("/licences.txt").text
+    for name in ("svelte", "three", "uplot", "openapi-fetch"):
+        assert re.search(rf"^{name} \d[\d.]*: (MIT|ISC)$", said, re.MULTILINE)
 
 
 @pytest.mark.parametrize("look", LOOKS)

@@ -3,16 +3,36 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from tests.conftest import ROOT
 from tests.page.test_screens import check
+from tests.real_parts import lacking
+from tests.records.serving import Server
 from tests.serve.servers import Client, Process
 
+from ulna.records.records import Records
+from ulna.serve.page import there
+
 EXAMPLE = ROOT / "examples" / "platinum"
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def server(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
+    """A bench of its own, its index in SQLite and in PostgreSQL."""
+    if not there():
+        lacking("the built page (make page, with Node 20.19)")
+    folder = tmp_path_factory.mktemp("trust") / "bench"
+    postgresql = Server() if request.param == "postgresql" else None
+    Records.init(folder, None if postgresql is None else postgresql.database(), by="Ann")
+    running = Process(folder)
+    yield running
+    running.end()
+    if postgresql is not None:
+        postgresql.end()
 
 
 @pytest.fixture
