@@ -30,9 +30,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
     running.end()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """One for the session."""
+    """One for a module: as long as it is open this thread has a loop of asyncio that runs, and others can begin none."""
     program = shutil.which("chromium") or shutil.which("google-chrome")
     if program is None:
         lacking("Chromium")

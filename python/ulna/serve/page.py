@@ -13,7 +13,13 @@ FOLDER = Path(__file__).resolve().parent / "page"
 MISSING = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Ulna</title>
 <p>This Ulna was built without its page. In a checkout: <code>make page</code>, with Node 20.19 or newer. The API is
 there all the same: <a href="/api/v1/openapi.json">/api/v1/openapi.json</a>.</p></html>"""
-TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".html": "text/html; charset=utf-8", ".txt": "text/plain; charset=utf-8"}
+TYPES = {
+    ".js": "text/javascript",
+    ".css": "text/css",
+    ".svg": "image/svg+xml",
+    ".html": "text/html; charset=utf-8",
+    ".txt": "text/plain; charset=utf-8",
+}
 
 
 def there() -> bool:
