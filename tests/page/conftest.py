@@ -32,7 +32,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """One for a module: as long as it is open this thread has a loop of asyncio that runs, and others can begin none."""
+    """One for a module: as long as it is open a loop of asyncio runs in this thread, and others can begin none."""
     program = shutil.which("chromium") or shutil.which("google-chrome")
     if program is None:
         lacking("Chromium")
