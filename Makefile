@@ -32,7 +32,7 @@ $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 		'PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .'
 	@touch $@
 
-PAGE := python/ulna/serve/page/.built
+PAGE := python/ulna/serve/page/index.html
 PAGE_SOURCES := $(shell find page -path page/node_modules -prune -o -type f -print)
 
 .PHONY: page
@@ -40,7 +40,6 @@ page: $(PAGE) ## build the page of ulna workbench (needs Node)
 
 $(PAGE): $(PAGE_SOURCES) tools/page.sh
 	@$(STEP) "Building the page of ulna workbench (a minute the first time)" "tools/page.sh build"
-	@mkdir -p $(@D) && touch $@
 
 .PHONY: workbench
 workbench: build ## open the workbench in your browser, with a bench folder in out/bench
