@@ -33,7 +33,7 @@ $(VENV)/.built: $(VENV)/.locked pyproject.toml $(RUST_SOURCES)
 	@touch $@
 
 PAGE := python/ulna/serve/page/index.html
-PAGE_SOURCES := $(shell find page -path page/node_modules -prune -o -type f -print)
+PAGE_SOURCES := $(shell find page -path page/node_modules -prune -o -type f ! -name schema.d.ts -print)
 
 .PHONY: page
 page: $(PAGE) ## build the page of ulna workbench (needs Node)
@@ -144,10 +144,9 @@ docs-output: build ## run what the docs show and write its output into docs/
 	$(BIN)/python tools/docs_evening.py # five minutes, as long as the hand takes
 
 .PHONY: schemas
-schemas: build ## write the JSON Schemas of all formats anew, and the page's contract, from the models they are made of
+schemas: build ## write the JSON Schemas of all formats anew, and the contract of the page, from the models they are made of
 	$(BIN)/python tools/schemas.py
 	$(BIN)/python tools/openapi.py
-	cd page && npm run --silent contract
 
 .PHONY: lock
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)

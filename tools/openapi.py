@@ -2,7 +2,7 @@
 
     python tools/openapi.py
 
-`npm run contract` in `page/` makes TypeScript of it.
+Each build of `page/` makes TypeScript of it.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ def test_the_virtual_arm_is_played_with_at_a_click(opened: Callable[..., Any], c
 
 
 def test_from_touches_to_a_result(
-    opened: Callable[..., Any], client: Client, server: Process, play: dict[str, Any], pictures: Path, tmp_path: Path
+    opened: Callable[..., Any], client: Client, server: Process, play: dict[str, Any], pictures: Path
 ) -> None:
     name = begin(client, play)
     page, base = opened(), server.address.partition("/#")[0]
@@ -53,10 +53,6 @@ def test_from_touches_to_a_result(
     page.screenshot(path=str(pictures / "results.png"))
     check(page, "results")
     sha256 = page.url.rsplit("/", 1)[1]
-    bench = client.get("/about")["bench"]
-    assert bench == "bench"
-    study = client.ask("GET", f"/files/{_left(client, name)['study']}/content").content
-    (tmp_path / "study.toml").write_bytes(study)
     shown = page.locator("main").inner_text()
     for section in client.get(f"/results/{sha256}")["sections"]:
         for block in section["blocks"]:
@@ -149,10 +145,6 @@ def test_the_keyboard_alone(opened: Callable[..., Any], client: Client, play: di
     page.keyboard.press("Enter")
     page.get_by_text("ball not seated").first.wait_for()
     assert client.get(f"/activities/{name}")["state"]["touches"][0]["withdrawn"] == "ball not seated"
-
-
-def _left(client: Client, name: str) -> dict[str, str]:
-    return {each["role"]: each["sha256"] for each in client.get(f"/activities/{name}")["left"]}
 
 
 def _until_reached(client: Client, name: str) -> None:

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -159,6 +160,16 @@ class Threaded:
         self._thread.join(PATIENCE_S)
         self._listening.close()
         self.workshop.close()
+
+
+@contextmanager
+def apart(folder: Path) -> Iterator[tuple[Client, Threaded]]:
+    """A bench of one module's own, for what is entered and never taken out; and somebody who is signed in."""
+    server = Threaded(folder / "bench")
+    client = Client(server.address).sign_in()
+    yield client, server
+    client.close()
+    server.end()
 
 
 class Process:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from tests.cli_runs import run
 from tests.pdf_reading import Pdf, holds
-from tests.serve.servers import Client, Threaded
+from tests.serve.servers import Client, Threaded, apart
 
 ROOT = Path(__file__).resolve().parents[2]
 PLATINUM = ROOT / "examples" / "platinum"
@@ -20,11 +20,8 @@ MORNINGS = [PLATINUM / f"morning-11-{day}.csv" for day in ("02", "04", "06", "09
 @pytest.fixture(scope="module")
 def own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Client, Threaded]]:
     """A bench of its own: what is entered is never taken out."""
-    server = Threaded(tmp_path_factory.mktemp("outcomes") / "bench")
-    client = Client(server.address).sign_in()
-    yield client, server
-    client.close()
-    server.end()
+    with apart(tmp_path_factory.mktemp("outcomes")) as both:
+        yield both
 
 
 @pytest.fixture(scope="module")

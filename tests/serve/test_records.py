@@ -11,7 +11,7 @@ from urllib.parse import quote
 import pytest
 from tests.cli_runs import run
 from tests.records.benches import RESULT, evaluation, verification
-from tests.serve.servers import Client, Threaded
+from tests.serve.servers import Client, Threaded, apart
 
 from ulna.records.records import Records
 
@@ -22,11 +22,8 @@ DAYS = ("2025-01-10", "2025-04-10", "2025-07-10", "2025-10-10", "2026-01-10", "2
 @pytest.fixture(scope="module")
 def own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Client, Threaded]]:
     """A bench of its own: what is entered is never taken out."""
-    server = Threaded(tmp_path_factory.mktemp("records") / "bench")
-    client = Client(server.address).sign_in()
-    yield client, server
-    client.close()
-    server.end()
+    with apart(tmp_path_factory.mktemp("records")) as both:
+        yield both
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ from ulna.calibration.result import Result
 from ulna.study.file import study_file
 from ulna.study.study import Study
 
-FOLDER = "held-out"
+FOLDER, FILE = "held-out", "evaluation.json"
 """Beside the study."""
 
 
@@ -46,6 +46,12 @@ class HeldOut:
             "expected_length_error_rms_mm": self.expected_mm,
             "coverage": None if found.coverage is None else asdict(found.coverage),
         }
+
+
+def judgement(result: Path) -> Path | None:
+    """What was written of the places held out by the session whose result.json it is; None where there is none."""
+    path = result.parent.parent / FOLDER / FILE
+    return path if path.is_file() else None
 
 
 def judge(result: Result, study: Path, begun: Arm) -> HeldOut | None:

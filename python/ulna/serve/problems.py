@@ -28,7 +28,7 @@ TITLES = {
 FAULT = "This is a fault of Ulna's, please report it; nothing was written."
 
 
-_PLACES = re.compile(r"(?<![\w.])/[^\s:;,'()]*/(?:desk/[0-9a-f]{64}|jobs/[0-9a-f]{16}|sessions/[\w-]+)/")
+_PLACES = re.compile(r"(?<![\w.])/(?:[^:;,'()\n]*/)?(?:desk/[0-9a-f]{64}|jobs/[0-9a-f]{16}|sessions/[\w-]+)/")
 """Where a bench keeps files."""
 
 

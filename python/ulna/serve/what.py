@@ -10,6 +10,7 @@ from ulna.arm.given import as_arm
 from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError
 from ulna.serve.contract.files import FileKind
+from ulna.serve.problems import without_places
 
 WHAT = 'a file of Ulna (TOML or JSON with a key "format")'
 _MOST = 64 << 20
@@ -60,6 +61,12 @@ KINDS: dict[str, tuple[FileKind, Callable[[Path], str]]] = {
     "ulna-lab": (FileKind.LABORATORY, _plain("a laboratory")),
 }
 """Name of a format → what it is, and a few words about it."""
+OTHERS = {
+    ".urdf": "a drawing (URDF): for a study of readings, or ulna import urdf",
+    ".png": "a picture: for a laboratory's logo",
+    ".svg": "a picture: for a laboratory's logo",
+}
+"""Ending of files that are used with others → a few words."""
 
 
 def what_is(path: Path) -> tuple[FileKind, str]:
@@ -70,11 +77,11 @@ def what_is(path: Path) -> tuple[FileKind, str]:
     try:
         kind = _format(path)
         if kind not in KINDS:
-            return FileKind.OTHER, "nothing that is known here"
+            return FileKind.OTHER, OTHERS.get(suffix, "nothing that is known here")
         found, said = KINDS[kind]
         return found, said(path)
     except UlnaInputError as error:
-        return FileKind.OTHER, str(error)
+        return FileKind.OTHER, without_places(str(error))
 
 
 def _format(path: Path) -> str:

@@ -15,7 +15,7 @@ from ulna.documents.write import NEEDS, write_report
 from ulna.formats.output import write_file
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import need
-from ulna.live.judging import FOLDER
+from ulna.live.judging import judgement
 from ulna.planning.file import load_plan_spec
 from ulna.planning.folder import NEEDS_PICTURES, STUDY, TABLE, WORK_SHEET
 from ulna.planning.plan import plan
@@ -56,10 +56,9 @@ def _calibrate(asked: BeginCalibrate, workshop: Workshop, folder: Path) -> Plann
 
 def _report(asked: BeginReport, workshop: Workshop, folder: Path) -> Planned:
     result = workshop.desk.path(asked.result)
-    evaluation = result.parent.parent / FOLDER / "evaluation.json"
 
     def work(progress: Progress) -> Made:
-        content = gather(result, evaluation=evaluation if evaluation.is_file() else None, progress=progress)
+        content = gather(result, evaluation=judgement(result), progress=progress)
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / "report.html"
         write_report(content, {"html": path}, asked.language, [result], False)

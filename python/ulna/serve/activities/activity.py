@@ -45,11 +45,6 @@ class Doing(ABC):
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """It is over: files that it leaves, by their role, and sentences. Raises UlnaInputError."""
 
-    @property
-    def over(self) -> bool:
-        """Whether there is nothing more to do."""
-        return False
-
 
 def unknown(asked: Do, kind: str) -> NotNowError:
     """Of a word that means nothing here."""

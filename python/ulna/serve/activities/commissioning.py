@@ -137,12 +137,7 @@ class Commissioning(Doing):
             return None
         t_s, frames = self._newest
         raw = frames.samples.raw[-1]
-        return Seen.nothing(len(raw)).newest(t_s, raw, self.stream.doubtful)
-
-    @property
-    def over(self) -> bool:
-        """It is ended by whoever does it."""
-        return False
+        return Seen(None).newest(t_s, raw, self.stream.doubtful)
 
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """arm.toml, source.toml, plan.toml and noise.toml; nothing where a joint was not found."""

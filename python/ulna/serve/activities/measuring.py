@@ -100,16 +100,20 @@ class Measuring(Doing):
             return None
         calibrated = self.out.arm
         probe = calibrated.arm.probe_index(calibrated.probe)
-        known = (
-            np.zeros(6) if calibrated.without is None and all(each.why is None for each in self._tip.figures) else None
-        )
-
-        def covariance(q_rad: F64) -> F64 | None:
-            return known
-
         rests = 1.0 if self._tip.stillness is not None and self._tip.stillness.still else 0.0
-        doubtful = self.out.doubt is not None
-        return Seen(calibrated.arm, probe, covariance).newest(self._tip.t_s, self._tip.q_rad, doubtful, rests)
+        doubtful, known = self.out.doubt is not None, self._covariance_mm2(self._tip, probe)
+        return Seen(calibrated.arm, probe).newest(self._tip.t_s, self._tip.q_rad, doubtful, rests, known)
+
+    def _covariance_mm2(self, tip: Tip, probe: int) -> F64 | None:
+        """(6,) of the tip, from the calibrated parameters; None where it is not determined."""
+        arm, conditions = self.out.arm.arm, self.out.arm.conditions
+        known = arm.uncertainty
+        if known is None or self.out.arm.without is not None or any(each.why is not None for each in tip.figures):
+            return None
+        columns = np.array([arm.parameter_names.index(name) for name in known.names], dtype=np.int64)
+        pose = np.ascontiguousarray(tip.q_rad[None])
+        found: F64 = arm.core.tip_covariance(pose, probe, columns, known.matrix, **conditions)[0]
+        return found
 
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """The points as a table, where there are any."""

@@ -117,7 +117,7 @@ class Running:
     def _go(self) -> None:
         self._tell_all(self._doing.begin())
         number, shown_s, told_s = 0, 0.0, 0.0
-        while not self._asked_to_end and self._ended is None and not self._doing.over:
+        while not self._asked_to_end and self._ended is None:
             try:
                 frames = self._stream.read(READ_S)
             except SourceEnded as end:
@@ -158,11 +158,8 @@ class Running:
 
     def _tell_all(self, events: Iterable[LiveEvent]) -> None:
         for event in events:
-            match event:
-                case SaidEvent() | FaultEvent():
-                    self._said.append(event.sentence)
-                case _:
-                    pass
+            if isinstance(event, SaidEvent | FaultEvent):
+                self._said.append(event.sentence)
             self._hub.tell(event, self.name)
 
     def _say(self, sentence: str) -> None:

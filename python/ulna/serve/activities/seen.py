@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,25 +13,19 @@ from ulna.live.postures import near_stops
 from ulna.serve.contract.arms import Bodies
 from ulna.serve.frames import Flag, Newest
 
-Covariance = Callable[[F64], F64 | None]
-"""(n,) angles → (6,) covariance of the tip, mm²; None where none is known."""
-
 
 @dataclass(frozen=True)
 class Seen:
     """How one is drawn."""
 
     arm: Arm | None
+    """None: of a stream of which nobody knows it."""
     probe: int = 0
-    covariance: Covariance = field(default=lambda q_rad: None)
 
-    @classmethod
-    def nothing(cls, joints: int) -> Seen:
-        """Of a stream of which nobody knows the arm."""
-        return cls(None)
-
-    def newest(self, t_s: float, q_rad: F64, doubtful: bool, rests: float = 0.0) -> Newest:
-        """What is packed."""
+    def newest(
+        self, t_s: float, q_rad: F64, doubtful: bool, rests: float = 0.0, covariance_mm2: F64 | None = None
+    ) -> Newest:
+        """What is packed. covariance_mm2: (6,) of the tip; None where none is known."""
         flags = Flag.DOUBTFUL if doubtful else Flag(0)
         if rests >= 1.0:
             flags |= Flag.STILL
@@ -41,18 +34,12 @@ class Seen:
         flags |= Flag.ARM
         if near_stops(self.arm, q_rad):
             flags |= Flag.AT_STOP
-        covariance = self.covariance(q_rad)
-        if covariance is None:
+        if covariance_mm2 is None:
             flags |= Flag.NOT_DETERMINED
-            covariance = np.zeros(6)
+            covariance_mm2 = np.zeros(6)
         tip_mm = self.arm.core.tip(np.ascontiguousarray(q_rad[None]), self.probe)[0]
         stand = np.array(bodies(self.arm, q_rad))[:, :3, :]
-        return Newest(t_s, q_rad, tip_mm, covariance, rests, stand, flags)
-
-
-def seen(arm: Arm, probe: str | None = None, covariance: Covariance = lambda q_rad: None) -> Seen:
-    """Of an arm with one of its probes on. Raises UlnaInputError for a probe that it has not."""
-    return Seen(arm, 0 if probe is None else arm.probe_index(probe), covariance)
+        return Newest(t_s, q_rad, tip_mm, covariance_mm2, rests, stand, flags)
 
 
 def bodies_of(arm: Arm, q_rad: F64, probe: int = 0) -> Bodies:

@@ -13,7 +13,7 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.ending import JOURNAL, RESULT, write_result, write_study
 from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import ORDINARY, Fault
-from ulna.live.judging import FOLDER, judge
+from ulna.live.judging import FILE, FOLDER, judge
 from ulna.live.playing import Player
 from ulna.live.said import happened_lines, held_out_lines
 from ulna.live.session import Session
@@ -120,16 +120,11 @@ class Touching(Doing):
         """The arm as it is known, where it is, and how sure its tip is."""
         if self._newest is None:
             return None
-        arm = self.session.arm_now
-        probe = arm.probe_index(self.session.spec.probe)
-
-        def covariance(q_rad: F64) -> F64 | None:
-            if self._covariance is None:
-                return None
-            found: F64 = arm.core.tip_covariance(np.ascontiguousarray(q_rad[None]), probe, *self._covariance)[0]
-            return found
-
-        return Seen(arm, probe, covariance).newest(*self._newest, self.stream.doubtful, self.session.rests)
+        arm, (t_s, q_rad) = self.session.arm_now, self._newest
+        probe, known = arm.probe_index(self.session.spec.probe), self._covariance
+        pose = np.ascontiguousarray(q_rad[None])
+        covariance_mm2 = None if known is None else arm.core.tip_covariance(pose, probe, *known)[0]
+        return Seen(arm, probe).newest(t_s, q_rad, self.stream.doubtful, self.session.rests, covariance_mm2)
 
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """The study, its readings, and the arm that was calibrated with them; the journal alone where they are too few
@@ -145,7 +140,7 @@ class Touching(Doing):
         result = write_result(study)
         left = [("study", study), ("arm", self._folder / "arm.toml"), ("result", study.parent / RESULT / "result.json")]
         if judge(result, study, self._begun) is not None:
-            left.append(("evaluation", study.parent / FOLDER / "evaluation.json"))
+            left.append(("evaluation", study.parent / FOLDER / FILE))
         if not result.fit.converged:
             said = [f"The fit did not converge ({result.fit.termination}): do not use these numbers.", *said]
         return [*left, journal], said

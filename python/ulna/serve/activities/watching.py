@@ -9,7 +9,7 @@ from ulna.arm.arm import Arm
 from ulna.live.samples import Samples
 from ulna.live.stream import Frames, Stream
 from ulna.serve.activities.activity import Doing, unknown
-from ulna.serve.activities.seen import Seen, seen
+from ulna.serve.activities.seen import Seen
 from ulna.serve.contract.activities import WatchState
 from ulna.serve.contract.live import LiveEvent
 from ulna.serve.contract.words import Do, DoTrust
@@ -23,7 +23,7 @@ class Watching(Doing):
 
     def __init__(self, stream: Stream, arm: Arm | None) -> None:
         self.stream = stream
-        self._seen: Seen | None = None if arm is None else seen(arm)
+        self._seen = Seen(arm)
         self._last: tuple[Samples, Frames] | None = None
 
     def begin(self) -> Iterator[LiveEvent]:
@@ -52,8 +52,7 @@ class Watching(Doing):
         if self._last is None:
             return None
         samples, frames = self._last
-        q_rad = frames.q_rad[-1]
-        return (self._seen or Seen.nothing(len(q_rad))).newest(float(samples.t_s[-1]), q_rad, self.stream.doubtful)
+        return self._seen.newest(float(samples.t_s[-1]), frames.q_rad[-1], self.stream.doubtful)
 
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """It leaves nothing."""

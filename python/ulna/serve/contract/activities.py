@@ -80,7 +80,7 @@ class Touch(Said):
     tip_mm: tuple[float, float, float]
     spread: Value
     off: Value | None
-    """What the fit leaves of it."""
+    """What the fit of then left of it, when it was taken."""
     times: float | None
     """The same in units of the scatter of all."""
     suspicious: bool

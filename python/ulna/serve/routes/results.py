@@ -10,7 +10,7 @@ from fastapi import APIRouter, Request
 from ulna.calibration.result import Result
 from ulna.documents.gather import gather
 from ulna.ground.errors import UlnaInputError
-from ulna.live.judging import FOLDER
+from ulna.live.judging import judgement
 from ulna.serve.contract import results as wire
 from ulna.serve.routes.common import Digest, workshop
 from ulna.serve.sections import sections
@@ -25,8 +25,7 @@ def result(request: Request, sha256: Digest, language: Literal["en", "de", "zh"]
     """One. What is said of readings that were held out is beside it, where a session held some out."""
     path = workshop(request).desk.path(sha256)
     found = Result.load(path)
-    evaluation = path.parent.parent / FOLDER / "evaluation.json"
-    content = gather(path, evaluation=evaluation if evaluation.is_file() else None)
+    content = gather(path, evaluation=judgement(path))
     return wire.ResultWhole(
         sha256=sha256,
         arm=found.arm.name,
