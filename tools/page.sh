@@ -18,6 +18,9 @@ if [ ! -e node_modules/.locked ] || [ package-lock.json -nt node_modules/.locked
     touch node_modules/.locked
 fi
 case $purpose in
-build) npm run --silent build ;;
+build)
+    # how large each file is interests whoever works on the page; others what went wrong
+    said=$(npm run --silent build 2>&1) || { printf '%s\n' "$said" >&2; exit 1; }
+    ;;
 check) npm run --silent check && npm run --silent test ;;
 esac
