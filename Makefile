@@ -152,7 +152,7 @@ schemas: build ## write the JSON Schemas of all formats anew, and the contract o
 lock: ## choose dependencies anew and write their hashes to requirements-dev.lock (needs uv)
 	@command -v uv >/dev/null || { echo "make lock: uv is not installed (pip install uv)" >&2; exit 1; }
 	UV_CUSTOM_COMPILE_COMMAND="make lock" uv pip compile --quiet --upgrade --universal --python-version 3.11 \
-		--generate-hashes --group dev --extra reports --extra tables --extra search --extra judge --extra workbench --extra mqtt --extra ros --extra opcua pyproject.toml --output-file requirements-dev.lock
+		--generate-hashes --group dev --extra reports --extra tables --extra search --extra judge --extra laboratory --extra mqtt --extra ros --extra opcua pyproject.toml --output-file requirements-dev.lock
 
 .PHONY: clean
 clean: ## remove everything that was built

@@ -37,7 +37,7 @@ class Client:
         self.http = httpx.Client(base_url=self.base, headers={"Origin": self.base}, timeout=PATIENCE_S)
 
     def sign_in(self) -> Client:
-        self.post("/login", {"token": self.token})
+        self.post("/login", {"way": "token", "token": self.token})
         return self
 
     @property
@@ -142,7 +142,7 @@ class Threaded:
 
     def __init__(self, folder: Path) -> None:
         self.workshop = Workshop(folder, "Ann")
-        self._listening = serving.listening_at(0)
+        self._listening = serving.listening_at(serving.HOST, [0], "port")
         there = threading.Event()
         self.address = ""
 

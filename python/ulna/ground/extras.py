@@ -18,13 +18,14 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "dask": ("distributed",),
     "records": ("sqlalchemy", "alembic", "pg8000"),
     "workbench": ("fastapi", "uvicorn"),
+    "laboratory": ("argon2", "authlib", "httpx2"),
     "mqtt": ("paho",),
     "ros": ("mcap", "mcap_ros2", "rosbags"),
     "opcua": ("asyncua",),
 }
 """Extra, as in pyproject.toml → what is imported of it."""
 
-PACKAGES = {"sklearn": "scikit-learn", "paho": "paho-mqtt", "mcap_ros2": "mcap-ros2-support"}
+PACKAGES = {"sklearn": "scikit-learn", "argon2": "argon2-cffi", "paho": "paho-mqtt", "mcap_ros2": "mcap-ros2-support"}
 """What is imported → the package that it is in, where that has another name."""
 
 

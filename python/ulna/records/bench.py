@@ -7,6 +7,7 @@ import os
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -91,6 +92,12 @@ class Bench:
         bench = cls(found(folder), by)
         with bench.reading():
             return bench
+
+    def worked_by(self, name: str) -> Bench:
+        """The same bench, with somebody else at work. Raises UlnaInputError for what is no name."""
+        other = copy(self)
+        other.by = _checked(name)
+        return other
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:

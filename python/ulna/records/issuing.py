@@ -20,7 +20,7 @@ from ulna.records.filing import ARMS
 from ulna.records.history import calibrations
 from ulna.records.registering import content_of, file_name, may
 from ulna.records.standing import filed
-from ulna.records.tables import CERTIFICATE, EQUIPMENT, STANDING
+from ulna.records.tables import CERTIFICATE, ENTRY, EQUIPMENT, FILE, STANDING
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def _planned(connection: Connection, by: str, wanted: Asked, now: datetime) -> _
     """Raises UlnaInputError for what cannot be issued."""
     sha256, arm = _stands(connection, _last(connection, wanted.result) or wanted.result)
     tests = [_of(connection, each, arm) for each in wanted.verification]
-    _eyes(connection, by, wanted.approved_by)
+    _eyes(connection, by, wanted.approved_by, [sha256, *tests])
     _superseded(connection, wanted)
     number = checked_text(wanted.number, "number") if wanted.number else _next(connection, now.year)
     if connection.scalar(select(CERTIFICATE.c.seq).where(CERTIFICATE.c.number == number)) is not None:
@@ -184,7 +184,8 @@ def _stands(connection: Connection, begins: str) -> tuple[str, str]:
     return sha256, arm
 
 
-def _eyes(connection: Connection, by: str, approved_by: str | None) -> None:
+def _eyes(connection: Connection, by: str, approved_by: str | None, files: Sequence[str]) -> None:
+    """Whoever approves neither issues it nor filed what it says (ISO/IEC 17025, 4.1: nobody judges their own work)."""
     if asked.setting(connection, "four-eyes", NAMES["four-eyes"]) != "yes":
         return
     if approved_by is None or approved_by == by:
@@ -195,6 +196,12 @@ def _eyes(connection: Connection, by: str, approved_by: str | None) -> None:
     if not may(connection, approved_by, "reviewer"):
         raise UlnaInputError(
             f"record: '{approved_by}' is no reviewer; expected one. Register: ulna record person NAME --role reviewer."
+        )
+    of_files = select(ENTRY.c.actor).join(FILE, FILE.c.seq == ENTRY.c.seq)
+    if approved_by in connection.scalars(of_files.where(FILE.c.sha256.in_(files), ENTRY.c.act == "filed")).all():
+        raise UlnaInputError(
+            f"record: '{approved_by}' filed what is to be certified; expected somebody who did not. Give "
+            "--approved-by NAME."
         )
 
 

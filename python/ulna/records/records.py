@@ -13,6 +13,7 @@ from ulna.comparison.compare import Comparison
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.shown import About, Shown, Table
 from ulna.records import asked, compared, copies, filing, listing, rebuild, registering, standing, verify
+from ulna.records.acts.setting import NAMES
 from ulna.records.advising import Advice, Wanted, advise, decide
 from ulna.records.bench import Bench
 from ulna.records.copies import Copied
@@ -25,7 +26,7 @@ from ulna.records.impact import Impact, impact
 from ulna.records.issuing import Asked, IssuedCertificate, issue
 from ulna.records.migrate import migrate
 from ulna.records.registering import Value
-from ulna.records.tables import EQUIPMENT
+from ulna.records.tables import EQUIPMENT, PERSON
 from ulna.records.trend import Trend, trend
 
 Path_ = str | os.PathLike[str]
@@ -52,6 +53,10 @@ class Records(Shown):
         """folder: None: as ULNA_RECORDS or the settings file say. by: who works; None: as ULNA_BY or the settings say,
         else the login's name."""
         return cls(Bench.open(folder, by))
+
+    def worked_by(self, name: str) -> Records:
+        """The same record, with somebody else at work."""
+        return Records(self.bench.worked_by(name))
 
     # ------------------------------------------------------------ what there is
 
@@ -96,6 +101,17 @@ class Records(Shown):
         """How the newest check or test of an arm ended: the worst of its figures. source: check, verification."""
         with self.bench.reading() as connection:
             return last_of(connection, asked.equipment(connection, arm)["name"], source)
+
+    def people(self) -> dict[str, tuple[str, ...]]:
+        """Everybody who was ever registered, by name, with their roles; none: gone."""
+        with self.bench.reading() as connection:
+            rows = asked.rows(connection, asked.newest(PERSON, "name"))
+        return {str(row["name"]): tuple(row["roles"].split()) for row in sorted(rows, key=lambda row: str(row["name"]))}
+
+    def settings(self) -> dict[str, str]:
+        """How the record is kept: four-eyes (yes, no), numbers (a pattern)."""
+        with self.bench.reading() as connection:
+            return {name: asked.setting(connection, name, usual) for name, usual in NAMES.items()}
 
     def due(self, on: str | None = None) -> list[Due]:
         """What must come back, the soonest first, seen from a day."""
@@ -150,7 +166,7 @@ class Records(Shown):
         return registering.happened(self.bench, name, kind, text, at, None if file is None else Path(file))
 
     def person(self, name: str, roles: Sequence[str]) -> Entry:
-        """Somebody, in which roles from now on: operator, reviewer, admin."""
+        """Somebody, in which roles from now on: reader, operator, reviewer, admin."""
         return registering.person(self.bench, name, roles)
 
     def set(self, name: str, value: str) -> Entry:

@@ -12,7 +12,10 @@ from pydantic import TypeAdapter
 from ulna.ground.version import VERSION
 from ulna.serve import page, problems
 from ulna.serve.contract.live import LiveEvent
-from ulna.serve.guarding import Guard, Guests
+from ulna.serve.entrance import Entrance
+from ulna.serve.guarding import Guard, Reach
+from ulna.serve.guests import Guests
+from ulna.serve.rights import PREFIX
 from ulna.serve.routes import (
     about,
     activities,
@@ -24,13 +27,16 @@ from ulna.serve.routes import (
     jobs,
     live,
     outcomes,
+    people,
     plans,
+    proposals,
+    provider,
     records,
     results,
     sources,
     tables,
 )
-from ulna.serve.routes.common import PREFIX, PROBLEMS
+from ulna.serve.routes.common import PROBLEMS
 from ulna.serve.workshop import Workshop
 
 ROUTERS: tuple[APIRouter, ...] = (
@@ -48,6 +54,9 @@ ROUTERS: tuple[APIRouter, ...] = (
     outcomes.router,
     records.router,
     filing.router,
+    proposals.router,
+    people.router,
+    provider.router,
 )
 
 
@@ -78,12 +87,12 @@ def contract(document: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(same, sort_keys=True).encode()).hexdigest()
 
 
-def make_app(workshop: Workshop, guests: Guests, hosts: frozenset[str]) -> Guard:
-    """All of it, for one bench. hosts: as browsers name this server, "127.0.0.1:8000"."""
+def make_app(workshop: Workshop, guests: Guests, entrance: Entrance, reach: Reach) -> Guard:
+    """All of it, for one bench."""
     app = api()
-    app.state.workshop, app.state.guests = workshop, guests
+    app.state.workshop, app.state.guests, app.state.entrance = workshop, guests, entrance
     page.install(app)
-    return Guard(app, guests, hosts)
+    return Guard(app, guests, entrance, reach)
 
 
 def _with_events(document: dict[str, Any]) -> None:

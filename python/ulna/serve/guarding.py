@@ -1,34 +1,39 @@
 """Who may ask: an ASGI layer around everything.
 
 Against rebinding, Host must be one of ours; against other sites' posts and sockets, Origin must be our own; whoever is
-not signed in gets the page and nothing else. Nothing of other origins is loaded by the page, nothing of it is framed.
+not signed in gets the page and nothing else, and who is gets what their roles allow. Nothing of other origins is loaded
+by the page, nothing of it is framed.
 """
 
 from __future__ import annotations
 
-import hmac
-import secrets
-import time
-from collections.abc import Awaitable, Callable, Mapping, MutableMapping
-from http.cookies import CookieError, SimpleCookie
+from collections.abc import Awaitable, Callable, MutableMapping
+from dataclasses import dataclass
 from typing import Any
 
+from fastapi.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from ulna.serve.problems import answer
+from ulna.ground.errors import UlnaInputError
+from ulna.serve.entrance import Entrance
+from ulna.serve.guests import Guests
+from ulna.serve.people import Person
+from ulna.serve.problems import answer, status_of
+from ulna.serve.rights import OPEN, PREFIX, SAFE, needed
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
+Refused = tuple[int, str]
 
-SESSION_S = 12 * 3600.0
+WHO = "ulna.who"
+"""In a scope: the `Person` who asks."""
+ADDRESS = "ulna.address"
+"""In a scope: of whose machine."""
 MOST_BODY, MOST_WORDS = 300 << 20, 1 << 20
 """Bytes that are taken: of a file, and of all else, also where nobody said before how many come."""
 FILES = "/api/v1/files"
-SAFE = ("GET", "HEAD", "OPTIONS")
-OPEN = ("/api/v1/login", "/api/v1/about")
-"""Of the API what anybody may ask."""
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self'; script-src 'self'; object-src 'none'; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'; connect-src 'self'"
@@ -45,76 +50,83 @@ HEADERS = (
     (b"cross-origin-opener-policy", b"same-origin"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
+BY_TLS = (b"strict-transport-security", b"max-age=31536000")
 
 
-class Guests:
-    """Who is signed in: by a token that is known to whoever started the server, then by a cookie."""
+@dataclass(frozen=True)
+class Reach:
+    """From where a server is reached."""
 
-    def __init__(self, port: int, token: str | None = None) -> None:
-        """port: where the server listens; a browser's cookies do not know it, and two servers must not share one."""
-        self.token = token or secrets.token_urlsafe(24)
-        self.cookie_name = f"ulna-session-{port}"
-        self._until: dict[str, float] = {}
-
-    def enter(self, token: str) -> str | None:
-        """The cookie of whoever knows the token; None of others."""
-        if not hmac.compare_digest(token.encode(), self.token.encode()):
-            return None
-        now = time.monotonic()
-        self._until = {each: until for each, until in self._until.items() if until > now}
-        cookie = secrets.token_urlsafe(32)
-        self._until[cookie] = now + SESSION_S
-        return cookie
-
-    def leave(self, cookie: str) -> None:
-        self._until.pop(cookie, None)
-
-    def cookie_of(self, headers: Mapping[str, str]) -> str | None:
-        """What a client carries."""
-        try:
-            found = SimpleCookie(headers.get("cookie", "")).get(self.cookie_name)
-        except CookieError:
-            return None
-        return None if found is None else found.value
-
-    def known(self, cookie: str | None) -> bool:
-        """Whether somebody is signed in by it."""
-        return cookie is not None and self._until.get(cookie, 0.0) > time.monotonic()
+    hosts: frozenset[str]
+    """As a browser names us, "127.0.0.1:8000"."""
+    schemes: tuple[str, ...] = ("http", "https")
+    """Of the page."""
+    proxies: frozenset[str] | None = None
+    """Addresses of the proxies before us: nobody else is answered, and they say who asks; None: there is none."""
 
 
 class Guard:
     """The layer."""
 
-    def __init__(self, app: App, guests: Guests, hosts: frozenset[str]) -> None:
-        """hosts: as a browser names us, "127.0.0.1:8000"."""
-        self._app, self._guests, self._hosts = app, guests, hosts
+    def __init__(self, app: App, guests: Guests, entrance: Entrance, reach: Reach) -> None:
+        self._app, self._guests, self._entrance, self._reach = app, guests, entrance, reach
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
-        refused = self._refused(scope, headers)
+        refused = self._from_elsewhere(scope, headers) or await self._not_theirs(scope, headers)
+        sent = _with_headers(send, scope["path"], self._reach.schemes == ("https",))
         if refused is None:
-            await self._app(scope, _limited(receive, scope), _with_headers(send, scope["path"]))
+            await self._app(scope, _limited(receive, scope), sent)
         else:
             if scope["type"] == "websocket":
                 await receive()
-            await answer(*refused)(scope, receive, _with_headers(send, scope["path"]))
+            await answer(*refused)(scope, receive, sent)
 
-    def _refused(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
+    def _from_elsewhere(self, scope: Scope, headers: dict[str, str]) -> Refused | None:
+        peer = (scope.get("client") or ("", 0))[0]
+        if self._reach.proxies is not None:
+            if peer not in self._reach.proxies:
+                return 403, f"address: got {peer}; expected one of the proxy's. Use the laboratory's address."
+            if headers.get("x-forwarded-proto", "").split(",")[-1].strip().lower() not in ("https", "wss"):
+                return 403, "X-Forwarded-Proto: expected https, said by the proxy. Use https, and let it say so."
+            peer = headers.get("x-forwarded-for", peer).split(",")[-1].strip()[:60]
+        scope[ADDRESS] = peer
         host, origin, path = headers.get("host", ""), headers.get("origin"), scope["path"]
-        if host not in self._hosts:
-            return 403, f"Host: got '{host[:80]}'; expected one of {', '.join(sorted(self._hosts))}. Use that address."
+        hosts = self._reach.hosts
+        if host not in hosts:
+            return 403, f"Host: got '{host[:80]}'; expected one of {', '.join(sorted(hosts))}. Use that address."
         unsafe = scope["type"] == "websocket" or scope["method"] not in SAFE
-        if (unsafe or origin is not None) and origin not in {f"{scheme}://{host}" for scheme in ("http", "https")}:
+        if (unsafe or origin is not None) and origin not in {f"{scheme}://{host}" for scheme in self._reach.schemes}:
             return 403, f"Origin: got '{(origin or '')[:80]}'; expected this server's own. Use its page."
         said = headers.get("content-length", "0")
         if said.isdigit() and int(said) > _most(path):
             return 413, f"{said} bytes; expected {_most(path)} at most. Cut it."
-        if path.startswith("/api/") and path not in OPEN and not self._guests.known(self._guests.cookie_of(headers)):
-            return 401, "Open the address that `ulna workbench` printed."
         return None
+
+    async def _not_theirs(self, scope: Scope, headers: dict[str, str]) -> Refused | None:
+        path = scope["path"]
+        if not path.startswith(f"{PREFIX}/"):
+            return None
+        below = path.removeprefix(PREFIX)
+        name = self._guests.known(self._guests.cookie_of(headers))
+        try:
+            who: Person | None = None if name is None else await run_in_threadpool(self._entrance.person, name)
+        except UlnaInputError as error:
+            return status_of(error), str(error)
+        scope[WHO] = who
+        if below in OPEN:
+            return None
+        if who is None:
+            return 401, self._entrance.closed
+        role = needed(scope.get("method", "GET"), below)
+        if role is not None and who.may(role):
+            return None
+        if role is None:
+            return 405, f"{scope['method']} {below[:80]}: this is not done here. Use the page."
+        return 403, f"{who.name}: this is for who is {role}; you are {', '.join(sorted(who.roles))}. Ask an admin."
 
 
 def _most(path: str) -> int:
@@ -135,7 +147,7 @@ def _limited(receive: Receive, scope: Scope) -> Receive:
     return received
 
 
-def _with_headers(send: Send, path: str) -> Send:
+def _with_headers(send: Send, path: str, by_tls: bool) -> Send:
     policy = REPORT_POLICY if path.endswith("/report") else POLICY
     cached = b"public, max-age=31536000, immutable" if path.startswith("/assets/") else b"no-store"
 
@@ -143,6 +155,7 @@ def _with_headers(send: Send, path: str) -> Send:
         if message["type"] == "http.response.start":
             own = {name for name, _ in message["headers"]}
             more = [*HEADERS, (b"content-security-policy", policy.encode()), (b"cache-control", cached)]
+            more += [BY_TLS] if by_tls else []
             message["headers"] = [*message["headers"], *(pair for pair in more if pair[0] not in own)]
         await send(message)
 

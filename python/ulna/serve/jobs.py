@@ -52,6 +52,7 @@ class _Job:
     name: str
     kind: str
     title: str
+    who: str
     work: Work
     state: State = "waiting"
     stage: str = ""
@@ -67,6 +68,7 @@ class _Job:
             id=self.name,
             kind=self.kind,
             title=self.title,
+            who=self.who,
             state=self.state,
             stage=self.stage,
             done=self.done,
@@ -87,9 +89,9 @@ class Jobs:
         self._waiting: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         threading.Thread(target=self._run, name="jobs", daemon=True).start()
 
-    def begin(self, kind: str, title: str, work: Work) -> wire.Job:
-        """One more."""
-        job = _Job(secrets.token_hex(6), kind, title, work)
+    def begin(self, kind: str, title: str, work: Work, who: str) -> wire.Job:
+        """One more. who: wants it."""
+        job = _Job(secrets.token_hex(6), kind, title, who, work)
         with self._lock:
             self._jobs[job.name] = job
             for old in [each for each in self._jobs.values() if each.state not in ("waiting", "running")][:-KEPT]:

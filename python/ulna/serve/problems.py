@@ -23,6 +23,7 @@ TITLES = {
     409: "This does not go now",
     413: "This is too large",
     422: "This cannot be used",
+    429: "This was tried too often",
     500: "This is a fault of Ulna's",
 }
 FAULT = "This is a fault of Ulna's, please report it; nothing was written."
@@ -38,6 +39,22 @@ class NotThereError(UlnaInputError):
 
 class NotNowError(UlnaInputError):
     """What cannot be done as things stand."""
+
+
+class NotAllowedError(UlnaInputError):
+    """What is not theirs to do."""
+
+
+class NotLetInError(UlnaInputError):
+    """Whoever this is, they are not who they say."""
+
+
+class ProviderError(UlnaInputError):
+    """Of a provider that cannot be reached, or said what is not to be believed."""
+
+
+class TooOftenError(UlnaInputError):
+    """It was tried too often; later it can be tried again."""
 
 
 def problem(status: int, detail: str) -> Problem:
@@ -61,7 +78,13 @@ def status_of(error: UlnaInputError) -> int:
     return next((status for kind, status in _STATUSES if isinstance(error, kind)), 400)
 
 
-_STATUSES: tuple[tuple[type[UlnaInputError], int], ...] = ((NotThereError, 404), (NotNowError, 409))
+_STATUSES: tuple[tuple[type[UlnaInputError], int], ...] = (
+    (NotThereError, 404),
+    (NotNowError, 409),
+    (NotAllowedError, 403),
+    (NotLetInError, 401),
+    (TooOftenError, 429),
+)
 
 
 def install(app: FastAPI) -> None:

@@ -30,13 +30,12 @@ from ulna.serve.contract.jobs import (
     BeginReport,
     BeginVerify,
 )
+from ulna.serve.issuing import ENDINGS
 from ulna.serve.jobs import Made, Planned, Progress
 from ulna.serve.remarks import remarks
 from ulna.serve.tested import check_work, verify_work
 from ulna.serve.workshop import Workshop
 from ulna.study.study import Study
-
-ENDINGS = {"pdf": "pdf", "dcc": "xml"}
 
 
 def _calibrate(asked: BeginCalibrate, workshop: Workshop, folder: Path) -> Planned:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError
@@ -10,17 +11,21 @@ from ulna.records.records import Records
 from ulna.serve.activities.hall import Hall
 from ulna.serve.desk import Desk
 from ulna.serve.hub import Hub
+from ulna.serve.issuing import issued
 from ulna.serve.jobs import Jobs
+from ulna.serve.proposals import Proposals
+from ulna.serve.sources import Allowed, allow_all
 
-DESK, SESSIONS, JOBS = "desk", "sessions", "jobs"
+DESK, SESSIONS, JOBS, PROPOSALS = "desk", "sessions", "jobs", "proposals"
 """In a bench folder, beside what is of the record."""
 
 
 class Workshop:
     """One bench."""
 
-    def __init__(self, folder: Path, by: str | None = None) -> None:
-        """A bench folder; a new record is made in one that is not there, or is empty. Raises UlnaInputError."""
+    def __init__(self, folder: Path, by: str | None = None, allowed: Allowed = allow_all) -> None:
+        """A bench folder; a new record is made in one that is not there, or is empty. allowed: which sources may be
+        opened. Raises UlnaInputError."""
         folder = folder.absolute()
         there = folder.is_dir() and any(folder.iterdir())
         if there and not (folder / BENCH).is_file():
@@ -30,12 +35,14 @@ class Workshop:
             )
         self.folder = folder
         self.records = Records.open(folder, by) if there else Records.init(folder, by=by)
-        for name in (DESK, SESSIONS, JOBS):
+        for name in (DESK, SESSIONS, JOBS, PROPOSALS):
             (folder / name).mkdir(exist_ok=True)
         self.hub = Hub()
         self.desk = Desk(folder / DESK, folder / SESSIONS, folder / JOBS)
-        self.hall = Hall(folder / SESSIONS, self.desk, self.hub)
+        self.allowed = allowed
+        self.hall = Hall(folder / SESSIONS, self.desk, self.hub, allowed)
         self.jobs = Jobs(self.hub, self.desk.take)
+        self.proposals = Proposals(folder / PROPOSALS, partial(issued, self.desk))
 
     @property
     def jobs_folder(self) -> Path:

@@ -7,7 +7,7 @@ from typing import Any
 import typer
 
 from ulna.cli.help import Command, Group
-from ulna.cli.recording import asking, filing, keeping, registering
+from ulna.cli.recording import account, asking, filing, keeping, registering
 
 app = typer.Typer(
     cls=Group,
@@ -26,6 +26,7 @@ TOPICS: tuple[dict[str, Any], ...] = (
     filing.COMMANDS,
     asking.COMMANDS,
     keeping.COMMANDS,
+    account.COMMANDS,
 )
 for topic in TOPICS:
     for name, function in topic.items():

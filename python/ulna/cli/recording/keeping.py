@@ -177,12 +177,13 @@ def set_(
 def person(
     name: Annotated[str, typer.Argument(metavar="NAME", help="As --by has it.", show_default=False)],
     role: Annotated[
-        list[str] | None, typer.Option("--role", metavar="ROLE", help="operator, reviewer, admin; may be repeated.")
+        list[str] | None,
+        typer.Option("--role", metavar="ROLE", help="reader, operator, reviewer, admin; may be repeated."),
     ] = None,
     where: Where = None,
     by: By = None,
 ) -> None:
-    """Say who somebody is: an operator, a reviewer, an admin. Without a role: none any more.
+    """Say who somebody is: a reader, an operator, a reviewer, an admin. Without a role: none any more.
 
     Example: [bold]ulna record person "Erika Muster" --role reviewer[/bold]
     """

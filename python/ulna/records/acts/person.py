@@ -9,7 +9,7 @@ from ulna.records.entry import Entry
 from ulna.records.store import Store
 from ulna.records.tables import PERSON
 
-ROLES = ("operator", "reviewer", "admin")
+ROLES = ("reader", "operator", "reviewer", "admin")
 
 
 def rows(entry: Entry, files: Store) -> Iterator[Row]:

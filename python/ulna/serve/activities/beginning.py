@@ -28,6 +28,7 @@ from ulna.serve.activities.watching import Watching
 from ulna.serve.beside import usable
 from ulna.serve.contract.activities import Begin, BeginCommission, BeginMeasure, BeginTouch, BeginWatch
 from ulna.serve.desk import Desk
+from ulna.serve.sources import Allowed
 
 ABOUT = "session.json"
 """In the folder of a session: how it was asked for, so that it can go on."""
@@ -40,6 +41,10 @@ class Place:
     desk: Desk
     folder: Path
     """Its own; made when something is kept."""
+    who: str
+    """Who works."""
+    allowed: Allowed
+    """Which sources may be opened."""
 
 
 def _watch(asked: BeginWatch, stream: Stream, place: Place) -> Doing:
@@ -65,6 +70,7 @@ def _touch(asked: BeginTouch, stream: Stream, place: Place) -> Doing:
     session = Session(arm, purpose.spec, stream, fit=purpose.fit, goal_u_mm=goal, by_itself=asked.by == "still")
     stated = stream.stated.file.model_dump(mode="json", exclude_none=True)
     head: dict[str, Any] = {"source": stated, "arm": arm.name, "artefact": purpose.spec.artefact.name}
+    head |= {"operator": place.who}
     journal, known, _ = begin(place.folder, stream.source.hello, **head)
     session.journal = journal
     if known:

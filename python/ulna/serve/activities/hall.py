@@ -20,6 +20,7 @@ from ulna.serve.contract.words import Do
 from ulna.serve.desk import Desk
 from ulna.serve.hub import Hub
 from ulna.serve.problems import NotNowError, NotThereError
+from ulna.serve.sources import Allowed
 
 KEPT = 20
 """Activities that are over and still can be looked at."""
@@ -28,20 +29,20 @@ KEPT = 20
 class Hall:
     """Of one bench."""
 
-    def __init__(self, folder: Path, desk: Desk, hub: Hub) -> None:
-        """folder: of the sessions, one each."""
-        self._folder, self._desk, self._hub = folder, desk, hub
+    def __init__(self, folder: Path, desk: Desk, hub: Hub, allowed: Allowed) -> None:
+        """folder: of the sessions, one each. allowed: which sources may be opened."""
+        self._folder, self._desk, self._hub, self._allowed = folder, desk, hub, allowed
         self._lock = threading.Lock()
         self._activities: dict[str, Running] = {}
 
-    def begin(self, asked: Begin) -> wire.Activity:
-        """A new one, or an interrupted session that goes on. Raises UlnaInputError."""
+    def begin(self, asked: Begin, who: str) -> wire.Activity:
+        """A new one, or an interrupted session that goes on. who: begins it. Raises UlnaInputError."""
         name = self._name(asked)
         with self._lock:
             busy = next((each for each in self._activities.values() if each.running), None)
             if busy is not None:
                 raise NotNowError(f"'{busy.name}' is still going on. End it first.")
-            running = Running(name, asked, Place(self._desk, self._folder / name), self._hub)
+            running = Running(name, asked, Place(self._desk, self._folder / name, who, self._allowed), self._hub)
             self._activities.pop(name, None)
             self._activities[name] = running
             for old in list(self._activities)[:-KEPT]:

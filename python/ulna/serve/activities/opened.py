@@ -8,13 +8,17 @@ from ulna.ground.errors import UlnaInputError
 from ulna.live.registry import KINDS
 from ulna.live.source_file import StatedSource, read_source
 from ulna.serve.desk import Desk
-
-OF_FILES = ("file", "bag", "virtual")
-"""Schemes whose URL begins with a path: here with the SHA-256 of a file of the desk."""
+from ulna.serve.sources import OF_FILES, Allowed
 
 
-def stated_source(desk: Desk, given: str) -> StatedSource:
+def stated_source(desk: Desk, given: str, allowed: Allowed) -> StatedSource:
     """A URL, or the SHA-256 of a source file or a recording. Raises UlnaInputError."""
+    stated = _stated(desk, given)
+    allowed(stated)
+    return stated
+
+
+def _stated(desk: Desk, given: str) -> StatedSource:
     scheme, colon, rest = given.partition(":")
     if not colon:
         path = desk.path(given)

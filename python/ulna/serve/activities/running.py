@@ -49,7 +49,7 @@ class Running:
         self._asked_to_end = self._interrupted = False
         self.running = True
         with ExitStack() as opening:
-            stated = stated_source(place.desk, asked.source)
+            stated = stated_source(place.desk, asked.source, place.allowed)
             source = open_source(stated)
             opening.callback(source.close)
             stream = Stream(source, stated, needs_angles(asked))
@@ -175,6 +175,7 @@ class Running:
             virtual=isinstance(self._stream.source, VirtualSource),
             running=self.running,
             begun=self.begun_at,
+            who=self._place.who,
             stream=self._stream_said(),
             state=self._doing.state(),
             said=list(self._said),

@@ -283,6 +283,8 @@ class Activity(Said):
     running: bool
     begun: str
     """UTC."""
+    who: Name
+    """Who began it."""
     stream: Stream
     state: State
     said: list[Sentence]

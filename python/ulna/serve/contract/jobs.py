@@ -107,6 +107,8 @@ class Job(Said):
     id: Name
     kind: str
     title: Sentence
+    who: Name
+    """Who began it."""
     state: Literal["waiting", "running", "done", "failed", "cancelled"]
     stage: str
     done: int

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 
 from ulna.serve.contract.activities import Activities, Activity, Begin
 from ulna.serve.contract.words import Do
-from ulna.serve.routes.common import Named, workshop
+from ulna.serve.routes.common import Named, who, workshop
 
 router = APIRouter(prefix="/activities", tags=["activities"])
 
@@ -20,7 +20,7 @@ def activities(request: Request) -> Activities:
 @router.post("", status_code=201)
 def begin(request: Request, asked: Begin) -> Activity:
     """One begins; one at a time, as there is one arm in the hand."""
-    return workshop(request).hall.begin(asked)
+    return workshop(request).hall.begin(asked, who(request).name)
 
 
 @router.get("/{name}")

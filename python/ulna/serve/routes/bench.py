@@ -9,7 +9,7 @@ from fastapi import APIRouter, Request
 from ulna.records.due import Due
 from ulna.records.records import Records
 from ulna.serve.contract import bench as wire
-from ulna.serve.routes.common import workshop
+from ulna.serve.routes.common import records, workshop
 
 router = APIRouter(prefix="/bench", tags=["bench"])
 ARMS = ("arm", "robot")
@@ -19,9 +19,9 @@ ARMS = ("arm", "robot")
 def bench(request: Request) -> wire.BenchInfo:
     """Arms of the record with how they stand, and sessions that can go on."""
     here = workshop(request)
-    records = here.records
-    due = {each.name: each for each in records.due()}
-    cards = [_card(records, row, due.get(str(row["name"]))) for kind in ARMS for row in records.equipment(kind)]
+    record = records(request)
+    due = {each.name: each for each in record.due()}
+    cards = [_card(record, row, due.get(str(row["name"]))) for kind in ARMS for row in record.equipment(kind)]
     return wire.BenchInfo(cards=cards, unfinished=here.hall.all().unfinished)
 
 

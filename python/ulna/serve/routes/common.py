@@ -6,10 +6,12 @@ from typing import Annotated, Any
 
 from fastapi import Path, Request
 
+from ulna.records.records import Records
 from ulna.serve.contract.model import Problem
+from ulna.serve.guarding import WHO
+from ulna.serve.people import Person
 from ulna.serve.workshop import Workshop
 
-PREFIX = "/api/v1"
 Digest = Annotated[str, Path(pattern=r"^[0-9a-f]{64}$")]
 Named = Annotated[str, Path(min_length=1, max_length=200)]
 PROBLEMS: dict[int | str, dict[str, Any]] = {
@@ -22,3 +24,14 @@ def workshop(request: Request) -> Workshop:
     """Whose routes they are."""
     found: Workshop = request.app.state.workshop
     return found
+
+
+def who(request: Request) -> Person:
+    """Who asks."""
+    found: Person = request.scope[WHO]
+    return found
+
+
+def records(request: Request) -> Records:
+    """The record, with whoever asks at work."""
+    return workshop(request).records.worked_by(who(request).name)

@@ -13,7 +13,7 @@ from ulna.documents.languages.words import Words
 from ulna.documents.sections.moved import step_blocks
 from ulna.ground.errors import UlnaInputError
 from ulna.serve.contract import compare as wire
-from ulna.serve.routes.common import workshop
+from ulna.serve.routes.common import records, workshop
 from ulna.serve.sections import blocks_said
 from ulna.serve.texts import length, valued
 from ulna.serve.workshop import Workshop
@@ -28,7 +28,7 @@ def compare(request: Request, asked: wire.CompareAsked) -> wire.Compared:
     if (asked.results is None) == (asked.arm is None):
         raise UlnaInputError("compare: expected results of the desk, or an arm of the record. Name one of them.")
     if asked.arm is not None:
-        found = here.records.compare(asked.arm, asked.last, asked.probe, asked.shared_u)
+        found = records(request).compare(asked.arm, asked.last, asked.probe, asked.shared_u)
     else:
         found = _of_desk(here, asked.results or [], asked)
     words = Words(asked.language)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 
 from ulna.serve import recorded
-from ulna.serve.beside import together
 from ulna.serve.contract import filing as wire
 from ulna.serve.contract.records import AllDue, DueInfo
-from ulna.serve.routes.common import workshop
-from ulna.serve.work import ENDINGS
+from ulna.serve.issuing import issued
+from ulna.serve.problems import NotAllowedError
+from ulna.serve.routes.about import laboratory_of
+from ulna.serve.routes.common import records, workshop
 
 router = APIRouter(prefix="/records", tags=["records"])
 
@@ -23,7 +22,9 @@ def add(request: Request, asked: wire.AddAsked) -> wire.Added:
     """Files of the desk, all or none: a result with its study and its readings, a check, a test."""
     here = workshop(request)
     paths = [here.desk.path(each) for each in asked.files]
-    found = here.records.add(*paths, arm=asked.arm, at=asked.at, artefacts=asked.artefacts, register=asked.register_arm)
+    found = records(request).add(
+        *paths, arm=asked.arm, at=asked.at, artefacts=asked.artefacts, register=asked.register_arm
+    )
     return wire.Added(
         filed=[
             wire.FiledInfo(sha256=each.sha256, name=each.path.name, arm=each.arm, kind=each.kind, new=each.new)
@@ -36,11 +37,11 @@ def add(request: Request, asked: wire.AddAsked) -> wire.Added:
 def certify(request: Request, asked: wire.CertifyAsked) -> wire.Entries:
     """What a certificate says of an artefact."""
     here = workshop(request)
-    if asked.artefact not in {str(each["name"]) for each in here.records.equipment()}:
+    if asked.artefact not in {str(each["name"]) for each in records(request).equipment()}:
         anew: dict[str, str | None] | None = {}
     else:
         anew = None
-    entry = here.records.certify(
+    entry = records(request).certify(
         asked.artefact,
         {each.quantity: (each.value_mm, each.u_mm) for each in asked.values},
         certificate=None if asked.certificate is None else here.desk.path(asked.certificate),
@@ -59,7 +60,7 @@ def certify(request: Request, asked: wire.CertifyAsked) -> wire.Entries:
 @router.post("/withdraw", status_code=201)
 def withdraw(request: Request, asked: wire.WithdrawAsked) -> wire.Entries:
     """A filed file, or a certificate: it is kept, and counts no longer."""
-    entry = workshop(request).records.withdraw(asked.subject, asked.reason)
+    entry = records(request).withdraw(asked.subject, asked.reason)
     return wire.Entries(entries=[wire.Entry(number=entry.seq, subject=entry.subject)])
 
 
@@ -69,7 +70,7 @@ def due(request: Request, on: Annotated[str | None, Query(min_length=4, max_leng
     return AllDue(
         due=[
             DueInfo(name=each.name, kind=each.kind, state=each.state, due_on=each.due, days=each.days, why=each.why)
-            for each in workshop(request).records.due(on)
+            for each in records(request).due(on)
         ]
     )
 
@@ -77,7 +78,7 @@ def due(request: Request, on: Annotated[str | None, Query(min_length=4, max_leng
 @router.get("/verify")
 def verify(request: Request) -> wire.Verified:
     """Chain, files and rows, all of them."""
-    found = workshop(request).records.verify()
+    found = records(request).verify()
     return wire.Verified(
         good=found.good,
         entries=found.entries,
@@ -94,26 +95,15 @@ def certificates(
     request: Request, arm: Annotated[str | None, Query(min_length=1, max_length=200)] = None
 ) -> wire.Certificates:
     """That were issued."""
-    return wire.Certificates(
-        certificates=[recorded.issued(each) for each in workshop(request).records.certificates(arm)]
-    )
+    return wire.Certificates(certificates=[recorded.issued(each) for each in records(request).certificates(arm)])
 
 
 @router.post("/issue", status_code=201)
 def issue(request: Request, asked: wire.IssueAsked) -> wire.IssuedNow:
-    """A certificate with its number and the record's head on it, entered and on the desk; or nothing of it."""
-    here = workshop(request)
-    with TemporaryDirectory(prefix="ulna-") as folder:
-        found = here.records.issue(
-            asked.result,
-            together(here.desk, Path(folder), asked.laboratory, asked.beside),
-            verification=asked.verification,
-            number=asked.number,
-            form=asked.form,
-            language=asked.language,
-            approved_by=asked.approved_by,
-            supersedes=asked.supersedes,
-            reason=asked.reason,
+    """A certificate with its number and the record's head on it, entered and on the desk; or nothing of it. Where
+    people sign in, a second one approves with their own name, not by being named."""
+    if asked.approved_by is not None and laboratory_of(request) is not None:
+        raise NotAllowedError(
+            f"approved_by: got '{asked.approved_by}'; expected nothing: who approves signs in. Propose it."
         )
-    info = here.desk.put(f"{found.number}.{ENDINGS[asked.form]}", found.content)
-    return wire.IssuedNow(number=found.number, arm=found.arm, sha256=info.sha256, name=info.name, head=found.head)
+    return issued(workshop(request).desk, records(request), asked)

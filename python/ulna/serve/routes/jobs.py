@@ -7,7 +7,7 @@ import secrets
 from fastapi import APIRouter, Request
 
 from ulna.serve.contract.jobs import BeginJob, Job, Jobs
-from ulna.serve.routes.common import Named, workshop
+from ulna.serve.routes.common import Named, who, workshop
 from ulna.serve.work import planned
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
@@ -24,7 +24,7 @@ def begin(request: Request, asked: BeginJob) -> Job:
     """One more; it waits until those before it are done."""
     here = workshop(request)
     title, work = planned(asked, here, here.jobs_folder / secrets.token_hex(8))
-    return here.jobs.begin(asked.kind, title, work)
+    return here.jobs.begin(asked.kind, title, work, who(request).name)
 
 
 @router.get("/{name}")

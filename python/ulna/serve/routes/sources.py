@@ -24,7 +24,7 @@ def ports(request: Request) -> wire.Ports:
 @router.post("/guess")
 def guess(request: Request, asked: wire.GuessAsked) -> wire.Guessed:
     """Listens, and proposes how to read it; nothing is taken as it is guessed."""
-    stated = stated_source(workshop(request).desk, asked.source)
+    stated = stated_source(workshop(request).desk, asked.source, workshop(request).allowed)
     heard = listened(stated, asked.seconds)
     proposal = guessed(heard.pieces, heard.messages)
     lines = b"".join(piece for _, piece in heard.pieces).splitlines()[:LINES]

@@ -1,0 +1,1 @@
+"""A laboratory of several people: who they are, how they sign in, and what their server reaches."""
