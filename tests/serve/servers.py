@@ -7,6 +7,8 @@ import json
 import os
 import re
 import signal
+import socket
+import ssl
 import subprocess
 import sys
 import threading
@@ -17,10 +19,13 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import uvicorn
 from tests.conftest import ROOT
 from websockets.sync.client import ClientConnection, connect
 
 from ulna.serve import serving
+from ulna.serve.guarding import Guard
+from ulna.serve.guests import Guests
 from ulna.serve.workshop import Workshop
 
 FAST = "moves=told&noise=5e-6&rate=200&hand=10&speed=10"
@@ -31,13 +36,19 @@ PATIENCE_S = 60.0
 class Client:
     """Somebody's browser."""
 
-    def __init__(self, address: str) -> None:
-        """address: as `ulna workbench` prints it."""
-        self.base, self.token = address.split("/#token=")
-        self.http = httpx.Client(base_url=self.base, headers={"Origin": self.base}, timeout=PATIENCE_S)
+    def __init__(self, address: str, trusted: ssl.SSLContext | None = None) -> None:
+        """address: as `ulna workbench` prints it. trusted: whose certificate is taken, of a laboratory's server."""
+        self.base, _, self.token = address.partition("/#token=")
+        self._trusted = trusted
+        verify: ssl.SSLContext | bool = True if trusted is None else trusted
+        self.http = httpx.Client(base_url=self.base, headers={"Origin": self.base}, timeout=PATIENCE_S, verify=verify)
 
     def sign_in(self) -> Client:
         self.post("/login", {"way": "token", "token": self.token})
+        return self
+
+    def sign_in_as(self, name: str, password: str) -> Client:
+        self.post("/login", {"way": "password", "name": name, "password": password})
         return self
 
     @property
@@ -93,7 +104,7 @@ class Client:
         origin = more.pop("origin", self.base)
         url = self.base.replace("http", "ws") + path
         # whoever leaves with messages unread does not wait for the other side's goodbye behind them
-        return connect(url, origin=origin, additional_headers=headers, close_timeout=0.1, **more)
+        return connect(url, origin=origin, additional_headers=headers, close_timeout=0.1, ssl=self._trusted, **more)
 
     def raw(self, method: str, target: str, headers: dict[str, str] | None = None) -> http.client.HTTPResponse:
         """A request whose path no library tidies up."""
@@ -141,8 +152,10 @@ class Threaded:
     """A server in a thread of this process."""
 
     def __init__(self, folder: Path) -> None:
-        self.workshop = Workshop(folder, "Ann")
-        self._listening = serving.listening_at(serving.HOST, [0], "port")
+        self._serve(Workshop(folder, "Ann"), serving.listening_at(serving.HOST, [0], "port"), serving.server_of)
+
+    def _serve(self, workshop: Workshop, listening: socket.socket, made: Callable[..., uvicorn.Server]) -> None:
+        self.workshop, self._listening = workshop, listening
         there = threading.Event()
         self.address = ""
 
@@ -150,10 +163,17 @@ class Threaded:
             self.address = address
             there.set()
 
-        self._server = serving.server_of(self.workshop, self._listening, ready)
+        self._server = made(self.workshop, self._listening, ready)
         self._thread = threading.Thread(target=self._server.run, kwargs={"sockets": [self._listening]})
         self._thread.start()
         assert there.wait(PATIENCE_S)
+
+    @property
+    def guests(self) -> Guests:
+        """Who is signed in."""
+        app = self._server.config.app
+        assert isinstance(app, Guard)
+        return app.guests
 
     def end(self) -> None:
         self._server.should_exit = True

@@ -85,15 +85,19 @@ def test_who_is_not_signed_in_gets_the_page_and_nothing_else(stranger: Client) -
 
 def test_a_wrong_token_opens_nothing(stranger: Client) -> None:
     for token in ("x", stranger.token[:-1], stranger.token + "x", "ü" * 40):
-        assert "token" in stranger.refused(401, "POST", "/login", json={"token": token})
+        assert "token" in stranger.refused(401, "POST", "/login", json={"way": "token", "token": token})
     assert not stranger.http.cookies
     stranger.refused(
-        422, "POST", "/login", content=b'{"token": "\\ud800"}', headers={"Content-Type": "application/json"}
+        422,
+        "POST",
+        "/login",
+        content=b'{"way": "token", "token": "\\ud800"}',
+        headers={"Content-Type": "application/json"},
     )
 
 
 def test_a_cookie_no_script_and_no_other_site_gets(stranger: Client) -> None:
-    cookie = stranger.ask("POST", "/login", json={"token": stranger.token}).headers["set-cookie"]
+    cookie = stranger.ask("POST", "/login", json={"way": "token", "token": stranger.token}).headers["set-cookie"]
     assert "HttpOnly" in cookie
     assert "SameSite=strict" in cookie
     stranger.get("/me")
@@ -103,9 +107,9 @@ def test_a_cookie_no_script_and_no_other_site_gets(stranger: Client) -> None:
     stranger.refused(401, "GET", "/me")
 
 
-def test_a_session_expires(stranger: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guarding, "SESSION_S", 0.0)
-    stranger.post("/login", {"token": stranger.token})
+def test_a_session_expires(stranger: Client, server: Threaded, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server.guests, "session_s", 0.0)
+    stranger.post("/login", {"way": "token", "token": stranger.token})
     assert stranger.cookie
     assert "ulna workbench" in stranger.refused(401, "GET", "/me")
 

@@ -69,7 +69,8 @@ class Guard:
     """The layer."""
 
     def __init__(self, app: App, guests: Guests, entrance: Entrance, reach: Reach) -> None:
-        self._app, self._guests, self._entrance, self._reach = app, guests, entrance, reach
+        self.guests = guests
+        self._app, self._entrance, self._reach = app, entrance, reach
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
@@ -111,7 +112,7 @@ class Guard:
         if not path.startswith(f"{PREFIX}/"):
             return None
         below = path.removeprefix(PREFIX)
-        name = self._guests.known(self._guests.cookie_of(headers))
+        name = self.guests.known(self.guests.cookie_of(headers))
         try:
             who: Person | None = None if name is None else await run_in_threadpool(self._entrance.person, name)
         except UlnaInputError as error:

@@ -30,6 +30,7 @@ RIGHTS = (
     Right("/logout", "reader"),
     Right("/me/password", "reader"),
     Right("/compare", "reader"),
+    Right("/arms/{sha256}/bodies", "reader"),
     Right("/play", "operator"),
     Right("/files", "operator"),
     Right("/sources/guess", "operator"),

@@ -97,7 +97,7 @@ def admit(request: Request, response: Response, name: str) -> None:
     response.set_cookie(
         guests.cookie_name,
         guests.admit(name),
-        max_age=int(guests.session_s),
+        max_age=max(1, int(guests.session_s)),
         httponly=True,
         samesite="strict",
         secure=guests.secure,
