@@ -1,6 +1,6 @@
 /** What goes on, as the line tells it: the activity that is looked at, jobs, and who is signed in. */
 import { announce } from "./announce.svelte";
-import { begin as beginActivity, me, activities as running, say } from "./api/calls";
+import { begin as beginActivity, gate, me, activities as running, say } from "./api/calls";
 import { Live } from "./api/live.svelte";
 import { reduced } from "./api/reduce";
 import { Refusal, SILENT } from "./api/refusal";
@@ -9,13 +9,17 @@ import { keep, kept } from "./kept";
 import { sound } from "./tones";
 import type { Feed, Frames } from "./widgets/picture";
 import { touchLine } from "./widgets/touching";
+import type { WordKey } from "./words/words.svelte";
 
-export type Door = "opening" | "open" | "locked" | "silent";
+export type Door = "opening" | "open" | "locked" | "sign-in" | "silent";
+export type Role = Me["roles"][number];
 
 class Bench {
 	door = $state<Door>("opening");
 	about = $state.raw<About | null>(null);
 	me = $state.raw<Me | null>(null);
+	/** Why somebody who came from elsewhere is not in. */
+	why = $state<WordKey | null>(null);
 	/** The one that is looked at. */
 	activity = $state.raw<Activity | null>(null);
 	jobs = $state.raw<Record<string, Job>>({});
@@ -25,6 +29,26 @@ class Bench {
 
 	constructor() {
 		this.live.onEvent((event) => this.take(event));
+		gate.closed = () => {
+			if (this.door === "open") this.shut();
+		};
+	}
+
+	/** Whether it is theirs to do. */
+	may(role: Role): boolean {
+		return this.me?.roles.includes(role) ?? false;
+	}
+
+	/** Whether several people work here, each under their own name. */
+	get laboratory(): boolean {
+		return this.about?.mode === "laboratory";
+	}
+
+	/** Nobody is signed in. */
+	shut(): void {
+		this.live.close();
+		this.me = null;
+		this.door = this.laboratory ? "sign-in" : "locked";
 	}
 
 	/** The arm's frames, as they come. */
@@ -74,7 +98,7 @@ class Bench {
 			this.me = await me();
 		} catch (error) {
 			if (error instanceof Refusal && error.status !== SILENT) {
-				this.door = "locked";
+				this.shut();
 				return false;
 			}
 		}

@@ -1,5 +1,6 @@
 /** The screens in the order in which they are used. A new one is a file and a row. */
 import type { Component } from "svelte";
+import type { Role } from "./bench.svelte";
 import type { IconName } from "./widgets/icons";
 import type { WordKey } from "./words/words.svelte";
 
@@ -9,6 +10,8 @@ export interface ScreenRow {
 	icon: IconName;
 	/** Whether it stands in the bottom bar of a small screen; the others are behind "more". */
 	first: boolean;
+	/** Who has it; nobody named: all. */
+	role?: Role;
 	load: () => Promise<{ default: Component }>;
 }
 
@@ -90,6 +93,14 @@ export const SCREENS: readonly ScreenRow[] = [
 		icon: "certificate",
 		first: false,
 		load: () => import("./screens/Certificate.svelte"),
+	},
+	{
+		path: "/people",
+		title: "screen.people",
+		icon: "person",
+		first: false,
+		role: "admin",
+		load: () => import("./screens/People.svelte"),
 	},
 ];
 

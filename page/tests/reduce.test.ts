@@ -45,6 +45,7 @@ const STATE: TouchState = {
 };
 const ACTIVITY: Activity = {
 	id: "x",
+	who: "Ann",
 	kind: "touch",
 	arm: null,
 	virtual: true,

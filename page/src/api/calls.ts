@@ -19,6 +19,10 @@ interface Answered<T> {
 	response: Response;
 }
 
+/** Told when the server says that nobody is signed in any more. */
+export const gate = { closed: (): void => {} };
+const CLOSED = 401;
+
 /** What was answered; a no as `Refusal`, and silence too. */
 async function got<T>(asked: Promise<Answered<Loose<T>>>): Promise<T> {
 	let answered: Answered<Loose<T>>;
@@ -28,13 +32,23 @@ async function got<T>(asked: Promise<Answered<Loose<T>>>): Promise<T> {
 		throw new Refusal(SILENT, "");
 	}
 	const { data, error, response } = answered;
+	if (response.status === CLOSED) gate.closed();
 	if (!response.ok) throw new Refusal(response.status, detailOf(error, response.status));
 	return data as T;
 }
 
 export const about = () => got<Say.About>(client.GET("/api/v1/about"));
 export const me = () => got<Say.Me>(client.GET("/api/v1/me"));
-export const login = (token: string) => got<Say.Me>(client.POST("/api/v1/login", { body: { token } }));
+export const login = (body: Say.Login) => got<Say.Me>(client.POST("/api/v1/login", { body }));
+export const logout = () => got<undefined>(client.POST("/api/v1/logout"));
+export const changePassword = (now: string, another: string) =>
+	got<undefined>(client.POST("/api/v1/me/password", { body: { now, new: another } }));
+export const people = () => got<Say.People>(client.GET("/api/v1/people"));
+export const setPerson = (body: Say.PersonAsked) => got<Say.People>(client.POST("/api/v1/people", { body }));
+export const setAccount = (name: string, body: Say.AccountAsked) =>
+	got<Say.People>(client.POST("/api/v1/people/{name}/account", { params: { path: { name } }, body }));
+export const rules = () => got<Say.Rules>(client.GET("/api/v1/settings"));
+export const setRules = (body: Say.RulesAsked) => got<Say.Rules>(client.POST("/api/v1/settings", { body }));
 export const benchInfo = () => got<Say.BenchInfo>(client.GET("/api/v1/bench"));
 export const play = () => got<Say.Play>(client.POST("/api/v1/play"));
 export const arms = () => got<Say.Arms>(client.GET("/api/v1/arms"));
@@ -101,6 +115,15 @@ export const verifyRecord = () => got<Say.Verified>(client.GET("/api/v1/records/
 export const certificates = () => got<Say.Certificates>(client.GET("/api/v1/records/certificates"));
 export const issue = (body: Say.IssueAsked) =>
 	got<Say.IssuedNow>(client.POST("/api/v1/records/issue", { body }));
+export const proposals = () => got<Say.Proposals>(client.GET("/api/v1/records/proposals"));
+export const propose = (body: Say.IssueAsked) =>
+	got<Say.Proposal>(client.POST("/api/v1/records/proposals", { body }));
+export const approve = (name: string) =>
+	got<Say.Proposal>(client.POST("/api/v1/records/proposals/{name}/approve", { params: { path: { name } } }));
+export const decline = (name: string, reason: string) =>
+	got<Say.Proposal>(
+		client.POST("/api/v1/records/proposals/{name}/decline", { params: { path: { name } }, body: { reason } }),
+	);
 export const compare = (body: Say.CompareAsked) =>
 	got<Say.Compared>(client.POST("/api/v1/compare", { body }));
 
@@ -124,5 +147,7 @@ export const bring = (file: Blob, name: string) =>
 
 /** To be saved, never shown. */
 export const contentUrl = (sha256: string) => `/api/v1/files/${sha256}/content`;
+/** Where somebody signs in elsewhere, and from where they come back. */
+export const PROVIDER = "/api/v1/provider/begin";
 /** To be shown in a frame of its own. */
 export const reportUrl = (sha256: string) => `/api/v1/files/${sha256}/report`;

@@ -12,6 +12,7 @@ export const ICONS = {
 	test: "M6 4h12v16H6zM9 9l1.5 1.5L13 8M9 15l1.5 1.5L13 14M15 10h1M15 16h1",
 	records: "M4 6h16M4 12h16M4 18h10",
 	certificate: "M5 4h14v11H5zM9 8h6M9 11h4M12 15v6M9.5 19l2.5-2 2.5 2",
+	person: "M12 11a3.5 3.5 0 1 0 0-7 3.5 3.5 0 0 0 0 7M5 20c.6-4 3.2-6 7-6s6.4 2 7 6",
 	more: "M5 12h.01M12 12h.01M19 12h.01",
 	good: "M5 12.5l4.5 4.5L19 7",
 	bad: "M6 6l12 12M18 6L6 18",

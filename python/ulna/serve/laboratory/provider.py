@@ -83,7 +83,7 @@ class Provider:
                     code_verifier=begun.verifier,
                     state=state,
                 )
-                keys = client.get(_text(said, "jwks_uri"), withhold_token=True).raise_for_status().json()
+                keys = client.request("GET", _text(said, "jwks_uri"), withhold_token=True).raise_for_status().json()
             return self._believed(said, token, keys, begun.nonce)
         except (httpx2.HTTPError, OAuthError, AuthlibBaseError, JoseError, ValueError, TypeError, KeyError) as error:
             raise ProviderError(f"{self._stated.issuer}: {type(error).__name__}: {error}. Try again.") from None
@@ -118,7 +118,7 @@ class Provider:
     def _asked(self, said: Mapping[str, Any], token: Mapping[str, Any], subject: str) -> dict[str, Any]:
         """What the token did not say, by the endpoint for it; of the same person."""
         with self._client(dict(token)) as client:
-            found = client.get(_text(said, "userinfo_endpoint")).raise_for_status().json()
+            found = client.request("GET", _text(said, "userinfo_endpoint")).raise_for_status().json()
         if not isinstance(found, dict) or found.get("sub") != subject:
             raise ValueError("what is said of a person is of another one")
         return found
