@@ -171,6 +171,8 @@ COMMANDS = [
     "verify fossils/verify-own.toml -o tested",
     "record init bench",
     "record arm small --records bench",
+    "record person Ann --role admin --records bench",
+    "record account Ann --sign-in ann --records bench",
 ]
 """What makes the other documents."""
 WHEN = "2026-01-01T00:00:00+00:00"

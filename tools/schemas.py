@@ -28,6 +28,7 @@ from ulna.documents.laboratory.tables import LaboratoryFile
 from ulna.live.tables import SourceFile
 from ulna.planning.file import PlanFile
 from ulna.planning.result_file import PlanResultFile
+from ulna.serve.laboratory.tables import WorkbenchFile
 from ulna.simulation.tables import SimulationFile
 from ulna.study.tables import StudyFile
 from ulna.uncertainties.performance_file import PerformanceFile
@@ -53,6 +54,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "ulna-protocol-1": ProtocolFile,
     "ulna-check-1": CheckFile,
     "ulna-source-1": SourceFile,
+    "ulna-workbench-1": WorkbenchFile,
     "ulna-result-1": ResultFile,
     "ulna-evaluation-1": EvaluationFile,
     "ulna-cross-validation-1": CrossValidationFile,

@@ -385,6 +385,11 @@ DOORS: dict[str, Door] = {
                 ",;\n",
             ),
         ),
+        Door(
+            "workbench",
+            TomlDoor(["fossils/workbench-1.toml"], ["workbench bench --laboratory {file} --check"]),
+            short=12,
+        ),
         Door("source", TomlDoor(["fossils/source-1.toml"], _WATCHED), short=25),
         Door("journal", JournalDoor(["fossils/journal-1.journal"], _REPLAYED), short=25),
         Door("new", new_trial),
