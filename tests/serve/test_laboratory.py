@@ -18,7 +18,7 @@ import httpx
 import pytest
 from tests.cli_runs import assert_bad_input, run
 from tests.serve.laboratories import PEOPLE, Laboratory, certificate_in, laboratory, password_of, people_in
-from websockets.exceptions import InvalidStatus
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from ulna.records.records import Records
 from ulna.serve.laboratory import entrance
@@ -26,6 +26,7 @@ from ulna.serve.laboratory.accounts import Accounts
 from ulna.serve.laboratory.throttle import FREE, FREE_OF_ADDRESS, LONGEST_S, Throttle
 from ulna.serve.people import Role
 from ulna.serve.rights import LOOKS, OPEN, PREFIX, RIGHTS, needed
+from ulna.serve.routes import live
 
 TLS = '[tls]\ncertificate = "server.pem"\nkey = "server.key"\n'
 PROVIDER = '[provider]\nissuer = "https://b.example"\nclient_id = "x"\n'
@@ -219,6 +220,21 @@ def test_whoever_is_gone_is_gone_at_once(tmp_path: Path, unforgetful: None) -> N
         Accounts(tmp_path / "bench").remove("Rita")
         rita.refused(401, "GET", "/files")
         assert "another" in ann.refused(409, "POST", "/people", json={"name": "Ann", "roles": ["reader"]})
+
+
+def test_whoever_is_gone_hears_nothing_more(tmp_path: Path, unforgetful: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live, "LOOK_S", 0.05)
+    with laboratory(tmp_path) as own:
+        ann, lea = own.of("Ann"), own.of("Lea")
+        with ann.socket() as staying, lea.socket() as going:
+            assert json.loads(going.recv(timeout=10))["event"] == "hello"
+            ann.post("/people", {"name": "Lea", "roles": []})
+            with pytest.raises(ConnectionClosed) as closed:
+                going.recv(timeout=10)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == live.NOT_KNOWN
+            assert json.loads(staying.recv(timeout=10))["event"] == "hello"
+            staying.ping().wait(10)
 
 
 def test_sessions_end(tmp_path: Path) -> None:

@@ -11,14 +11,18 @@ from fastapi import APIRouter, Query, WebSocket, WebSocketDisconnect
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.version import VERSION
 from ulna.serve.contract.live import HelloEvent
+from ulna.serve.entrance import Entrance
+from ulna.serve.guests import Guests
 from ulna.serve.hub import Listener
 from ulna.serve.workshop import Workshop
 
 router = APIRouter()
-TOO_SLOW, NOT_THERE = 4008, 4404
+TOO_SLOW, NOT_KNOWN, NOT_THERE = 4008, 4401, 4404
 """Why a socket is closed. The guard refuses before there is one: with 401 and 403, as of any request."""
 CLOSE_S = 1.0
 """How long one that does not read is told so."""
+LOOK_S = 5.0
+"""How often it is asked whether whoever listens still may."""
 
 
 @router.websocket("/live")
@@ -45,7 +49,8 @@ async def live(socket: WebSocket, activity: Annotated[str | None, Query(max_leng
 async def _both(socket: WebSocket, listener: Listener) -> None:
     """Until whoever listens goes, or is too slow: one that does not read is waited for no longer. What they send is not
     for this socket and is dropped."""
-    tasks = [asyncio.create_task(each) for each in (_send(socket, listener), _hear(socket), listener.gone.wait())]
+    works = (_send(socket, listener), _hear(socket), listener.gone.wait(), _until_gone(socket))
+    tasks = [asyncio.create_task(each) for each in works]
     _, rest = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     for task in rest:
         task.cancel()
@@ -61,6 +66,19 @@ async def _send(socket: WebSocket, listener: Listener) -> None:
     while True:
         found = await listener.next()
         await (socket.send_text(found) if isinstance(found, str) else socket.send_bytes(found))
+
+
+async def _until_gone(socket: WebSocket) -> None:
+    """Until whoever listens signed out, or may not any more."""
+    guests: Guests = socket.app.state.guests
+    entrance: Entrance = socket.app.state.entrance
+    cookie = guests.cookie_of(socket.headers)
+    while True:
+        await asyncio.sleep(LOOK_S)
+        name = guests.known(cookie)
+        if name is None or await asyncio.to_thread(entrance.person, name) is None:
+            await socket.close(NOT_KNOWN)
+            return
 
 
 async def _hear(socket: WebSocket) -> None:
