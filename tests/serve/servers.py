@@ -208,6 +208,11 @@ class Process:
         assert found is not None, heard.decode()
         self.address = found[1].decode()
 
+    @property
+    def pid(self) -> int:
+        """Of the server."""
+        return self._process.pid
+
     def end(self, how: signal.Signals = signal.SIGTERM) -> None:
         self._process.send_signal(how)
         self._process.wait(PATIENCE_S)
