@@ -34,7 +34,7 @@ class Workshop:
             (folder / name).mkdir(exist_ok=True)
         self.hub = Hub()
         self.desk = Desk(folder / DESK, folder / SESSIONS, folder / JOBS)
-        self.hall = Hall(folder / SESSIONS, self.desk, self.hub)
+        self.hall = Hall(folder / SESSIONS, self.desk, self.records.bench, self.hub)
         self.jobs = Jobs(self.hub, self.desk.take)
 
     @property

@@ -60,6 +60,7 @@ SPHERE = TestKind(
     steps=_steps,
     evaluate=_evaluate,
     limits={"P_Size": 0.040, "P_Form": 0.080},
+    growing=None,
     length_errors=False,
     again="Touch the ball again, over half of it.",
     look="Look at the probe's ball and at the ball of the check: clean, unworn, nothing loose.",
