@@ -51,7 +51,7 @@ class Testing(Stepwise):
         with remarks() as said:
             found = verify(self._folder / TEST)
         found.save(self._folder / FOLDER, force=True)
-        made = [("verification", FILE), ("readings", TABLE)]
+        made = [("verification", FILE), ("values", TABLE)]
         return [("test", self._folder / TEST), *((role, self._folder / FOLDER / name) for role, name in made)], said
 
 

@@ -313,6 +313,7 @@ class Left(Said):
         "check",
         "test",
         "verification",
+        "values",
     ]
     sha256: Sha256
     name: Name
