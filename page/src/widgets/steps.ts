@@ -6,6 +6,7 @@ import { plain } from "./values";
 export type StepsState = CheckState | TestState;
 export type StepNow = NonNullable<StepsState["present"]>;
 export type Part = StepsState["parts"][number];
+type Label = "position" | "orientation" | "repeat";
 export type FigureNow = Part["figures"][number];
 
 interface Said {
@@ -30,15 +31,14 @@ export function toDo(step: StepNow): Said | null {
 	return DO[step.kind]?.(step) ?? null;
 }
 
-/** "bar · place 2 · measurement 1": which measurement. */
-export function measurementOf(
-	part: Omit<Part, "first" | "touched" | "touches" | "figures" | "verdict">,
-): string {
+/** "bar · place 2 · measurement 1": which measurement; the last where there are several of one. */
+export function measurementOf(state: StepsState, part: Pick<Part, "test" | "artefact" | Label>): string {
+	const again = state.parts.some((each) => each.test === part.test && each.repeat !== part.repeat);
 	return [
 		part.artefact || part.test,
 		part.position && t("steps.place", { place: part.position }),
 		part.orientation && t("steps.orientation", { orientation: part.orientation }),
-		part.repeat && t("steps.repeat", { repeat: part.repeat }),
+		again && part.repeat && t("steps.repeat", { repeat: part.repeat }),
 	]
 		.filter((each) => each)
 		.join(" · ");

@@ -107,7 +107,8 @@ def _scatter(by_list: ByList, touch: Touch) -> Value | None:
 
 def _place(by_list: ByList, touch: Touch) -> str:
     step = by_list.work.listed[by_list.steps[touch.number]].step
-    said = [step.artefact or step.test, step.position, step.orientation, step.repeat]
+    again = any(each.test == step.test and each.repeat != step.repeat for each in by_list.work.steps)
+    said = [step.artefact or step.test, step.position, step.orientation, step.repeat if again else ""]
     return " ".join(each for each in said if each)
 
 
