@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.conftest import ROOT
 from tests.page.conftest import NARROW
 from tests.page.test_screens import check
-from tests.serve.servers import FAST, Client, Process
+from tests.serve.servers import FAST, Client, Process, wait_for
+
+from ulna.verification.kinds.registry import KINDS
 
 
 @pytest.fixture
@@ -31,12 +34,14 @@ def test_a_check_touched_to_its_end(
     size = page.locator("section.do b").evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
     assert size >= 60.0, "legible from three metres"
     page.get_by_role("button", name="Do what is asked for").click()
-    page.get_by_text(re.compile("[2-5] of 9 touched")).first.wait_for()
+    page.get_by_text(re.compile("Touch end")).first.wait_for()
+    page.locator("details.card button[aria-pressed=true]").click()
+    page.evaluate("scrollTo(0, 0)")
+    page.screenshot(path=str(pictures / "check.png"))
     check(page, "check, while it is touched")
+    page.get_by_role("button", name="Do what is asked for").click()
     page.get_by_text("All is touched").first.wait_for()
     page.get_by_text("E_Uni").nth(1).wait_for()
-    page.evaluate("scrollTo(0, 0)")
-    page.screenshot(path=str(pictures / "check-touched.png"))
     page.keyboard.press("w")
     page.get_by_text("8 of 9 touched").first.wait_for()
     page.get_by_text("All is touched").first.wait_for()
@@ -49,6 +54,28 @@ def test_a_check_touched_to_its_end(
     shown = page.locator("main").inner_text()
     assert all(each["value"]["text"] in shown for each in found["figures"])
     assert not client.get(f"/activities/{name}")["running"]
+
+
+def test_one_that_was_interrupted_goes_on_from_the_bench(
+    opened: Callable[..., Any], client: Client, server: Process, fast: dict[str, Any]
+) -> None:
+    asked = {"kind": "check", "source": fast["source"], "arm": fast["arm"], "protocol": fast["protocol"]}
+    name = client.post("/activities", asked)["id"]
+    client.post(f"/activities/{name}/do", {"word": "follow", "follows": True})
+    wait_for(lambda: client.get(f"/activities/{name}")["state"]["done"] >= 2, "two touches")
+    client.post(f"/activities/{name}/do", {"word": "end"})
+    page = opened("zh")
+    page.goto(f"{server.address.partition('/#')[0]}/")
+    page.get_by_role("button", name="继续").first.click()
+    page.wait_for_url("**/check")
+    page.get_by_text(re.compile(r"已触测 [2-9] / 9")).first.wait_for()
+    assert client.get("/activities")["running"][0]["id"] == name
+
+
+def test_the_page_has_words_for_each_kind_of_test() -> None:
+    text = (ROOT / "page" / "src" / "widgets" / "steps.ts").read_text(encoding="utf-8")
+    rows = text[text.index("const DO") : text.index("export function toDo")]
+    assert set(re.findall(r'^\t"?([\w-]+)"?: \(', rows, re.MULTILINE)) == set(KINDS)
 
 
 def test_a_test_touched_to_its_end_on_a_phone_in_german(
