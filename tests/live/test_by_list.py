@@ -141,10 +141,14 @@ def test_by_a_key_a_touch_is_taken_where_it_is_asked_for(tmp_path: Path) -> None
         told = by_list.ask()
         assert isinstance(told, OfStep)
         assert told.step == 0
+        same = by_list.ask()
+        assert same == Refused("the same posture as touch 1: move elbow and wrist between touches")
         by_list.stream.plausible.doubtful = True  # as after a reset
-        assert isinstance(by_list.ask(), Refused)
+        doubted = by_list.ask()
+        assert isinstance(doubted, Refused)
+        assert "in doubt" in doubted.reason
         by_list.trust()
-        assert isinstance(by_list.ask(), OfStep)
+        assert by_list.ask() == same
 
 
 def test_an_arm_that_nothing_tells_from_rest_is_refused(tmp_path: Path) -> None:

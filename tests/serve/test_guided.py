@@ -66,10 +66,14 @@ def folder_of(server: Threaded, name: str) -> Path:
     return server.workshop.folder / "sessions" / name
 
 
+@pytest.mark.parametrize("reads", ['arm = "arm.toml"', "ball = 0.0"], ids=["encoders", "points"])
 def test_a_check_is_what_the_command_finds_in_the_table(
-    client: Client, server: Threaded, given: dict[str, Any], tmp_path: Path
+    client: Client, server: Threaded, given: dict[str, Any], tmp_path: Path, reads: str
 ) -> None:
-    name, told, left = played(client, a_check(given, operator="Ann"))
+    """Of a protocol that names an arm, and of one whose readings are x, y, z."""
+    text = server.workshop.desk.path(given["protocol"]).read_text().replace('arm = "arm.toml"', reads)
+    brought = client.ask("POST", "/files", params={"name": "before-work.toml"}, content=text.encode()).json()["sha256"]
+    name, told, left = played(client, a_check({**given, "protocol": brought}, operator="Ann"))
     folder, out = folder_of(server, name), tmp_path / "check.json"
     command = run("check", folder / "before-work.toml", folder / "readings.csv", "-o", out)
     assert command.returncode == 0, command.stderr
@@ -104,8 +108,11 @@ def test_steps_come_in_order_and_values_as_soon_as_they_are_known(client: Client
     scatter = [state["touches"][-1]["scatter"] for k, state in sorted(by_done.items()) if k]
     assert scatter[0] is None
     assert all(each["value"] > 0.0 for each in scatter[1:5])
-    lines = [event["sentences"] for event in told if event["event"] == "touch"]
-    assert any("SPAT_max" in line and line.endswith(": pass.") for line in lines[1])
+    assert all(
+        "Scatter in its seat" in event["sentences"][1] for event in told if event.get("touch", {}).get("number") == 2
+    )
+    said = [event["sentence"] for event in told if event["event"] == "said"]
+    assert any(line.startswith("SPAT_max") and line.endswith("of 0.0600 mm: pass.") for line in said)
 
 
 def test_an_arm_as_found_then_as_left(client: Client, server: Threaded, given: dict[str, Any], tmp_path: Path) -> None:

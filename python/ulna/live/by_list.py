@@ -26,7 +26,7 @@ from ulna.live.ring import Ring
 from ulna.live.sources.virtual import VirtualSource
 from ulna.live.stream import Frames, Stream
 from ulna.live.touches import Touch, as_dict, present
-from ulna.live.trigger import Refused, Taken
+from ulna.live.trigger import Refused, Taken, same_pose
 from ulna.verification.to_touch import WorkList
 
 AROUND_S = 1.0
@@ -184,6 +184,9 @@ class ByList:
         step = self.step
         if step is None:
             return Refused(DONE)
+        again = self._again(found.q_rad, step)
+        if again is not None:
+            return Refused(f"the same posture as touch {again}: move elbow and wrist between touches")
         poses = np.array([found.q_rad, *(each.q_rad for each in self.counting.values())])
         at_mm, *others_mm = self.arm.tips_mm(poses)
         why = self.work.unlikely(step, at_mm, dict(zip(self.counting, others_mm, strict=True)))
@@ -196,6 +199,15 @@ class ByList:
         self.touches.append(touch)
         self.steps[touch.number] = step
         return OfStep(touch, step)
+
+    def _again(self, q_rad: F64, step: int) -> int | None:
+        """Which touch of the same measurement has this posture, where none should."""
+        listed = self.work.listed[step]
+        own = [each for k, each in self.counting.items() if self.work.listed[k].measurement == listed.measurement]
+        if not (listed.moved and own):
+            return None
+        which = same_pose(q_rad, np.array([each.q_rad for each in own]))
+        return None if which is None else own[which].number
 
     def _touch(self, found: Taken, step: int) -> Touch:
         own = self.work.listed[step].step

@@ -37,6 +37,8 @@ class Listed:
     """Length or diameter of the artefact as it is certified, at the temperature of the test; 0 where it has none."""
     off_mm: float
     """By how much a touch may be elsewhere than that says, before it is asked about."""
+    moved: bool
+    """Whether it is to be touched in another posture than the touches of the same measurement."""
 
     @property
     def measurement(self) -> tuple[str, ...]:
@@ -139,7 +141,8 @@ def _wanted(profile: ProfileFile, step: Step) -> Wanted:
 
 def _listed(plan: VerifyPlan, step: Step, wanted: Wanted) -> Listed:
     off_mm = plan.file.artefact[step.artefact].off_mm if step.artefact else OFF_MM
-    return Listed(step, wanted, wanted.true_mm(plan.bench, step.artefact, step.test), off_mm)
+    moved = kind_of(plan.profile.file.test[step.test].kind).moved
+    return Listed(step, wanted, wanted.true_mm(plan.bench, step.artefact, step.test), off_mm, moved)
 
 
 def _named(plan: VerifyPlan) -> dict[str, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ulna.live.by_list import ByList, OfStep
 from ulna.live.said import length_said
 from ulna.live.touches import Touch
@@ -38,7 +40,7 @@ def present_said(by_list: ByList) -> guided.StepNow | None:
 def parts_said(by_list: ByList, known: SoFar) -> tuple[list[guided.Part], list[guided.FigureNow]]:
     """Each measurement with its figures, and figures of several together."""
     work, there = by_list.work, by_list.counting
-    owners = [_owner(work, each) for each in known.values]
+    owners = _owners(work, known.values)
     parts = []
     for number, part in enumerate(work.parts):
         own = [each for each, owner in zip(known.values, owners, strict=True) if owner == number]
@@ -56,15 +58,18 @@ def parts_said(by_list: ByList, known: SoFar) -> tuple[list[guided.Part], list[g
     return parts, [figure_said(each) for each, owner in zip(known.values, owners, strict=True) if owner is None]
 
 
-def _owner(work: WorkList, value: Fallen) -> int | None:
-    """The only measurement that a value can be of."""
-    labels = value.judged.single.labels.as_dict()
-    found = []
+def _owners(work: WorkList, values: Sequence[Fallen]) -> list[int | None]:
+    """Of each value the only measurement that it can be of; None where it is of several together."""
+    parts: dict[str, list[tuple[int, dict[str, str]]]] = {}
     for number, part in enumerate(work.parts):
-        step = work.listed[part[0]].step
-        if step.test == value.test and all(getattr(step, name) in ("", text) for name, text in labels.items()):
-            found.append(number)
-    return found[0] if len(found) == 1 else None
+        own = _labels(work, part[0])
+        parts.setdefault(own["test"], []).append((number, own))
+    owners = []
+    for value in values:
+        labels = value.judged.single.labels.as_dict().items()
+        found = [n for n, own in parts[value.test] if all(own[name] in ("", text) for name, text in labels)]
+        owners.append(found[0] if len(found) == 1 else None)
+    return owners
 
 
 def figure_said(found: Fallen) -> guided.FigureNow:
@@ -130,17 +135,21 @@ def taken_said(by_list: ByList, event: OfStep) -> activities.Touch:
     )
 
 
-def lines_of(by_list: ByList, event: OfStep, known: SoFar) -> list[str]:
-    """A touch that was taken, the scatter in its seat, and what is known with it."""
+def lines_of(by_list: ByList, event: OfStep) -> list[str]:
+    """A touch that was taken, and the scatter in its seat."""
     touch, step = event.touch, by_list.work.listed[event.step].step
     lines = [f"Touch {touch.number}, {step.what}: spread {length_said(touch.spread_mm)}."]
     scatter_mm = by_list.scatter_mm(event.step)
-    if scatter_mm is not None:
-        lines.append(f"Scatter in its seat {length_said(scatter_mm)}.")
-    part = next(k for k, each in enumerate(by_list.work.parts) if event.step in each)
-    for each in known.values:
+    return lines if scatter_mm is None else [*lines, f"Scatter in its seat {length_said(scatter_mm)}."]
+
+
+def fallen_lines(by_list: ByList, step: int, known: SoFar) -> list[str]:
+    """What is known of the measurement of a step, of what has a limit."""
+    part = next(k for k, each in enumerate(by_list.work.parts) if step in each)
+    lines = []
+    for each, owner in zip(known.values, _owners(by_list.work, known.values), strict=True):
         said = figure_said(each)
-        if said.limit is not None and _owner(by_list.work, each) == part:
+        if said.limit is not None and owner == part:
             verdict = "" if said.verdict is None else f": {said.verdict}"
             lines.append(f"{said.key} {said.value.text} of {said.limit.text} {said.limit.unit}{verdict}.")
     return lines

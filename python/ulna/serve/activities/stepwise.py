@@ -19,7 +19,7 @@ from ulna.live.stream import Frames
 from ulna.live.trigger import Refused
 from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.seen import Seen, tip_covariance
-from ulna.serve.activities.steps_said import lines_of, parts_said, present_said, taken_said, touches_said
+from ulna.serve.activities.steps_said import fallen_lines, lines_of, parts_said, present_said, taken_said, touches_said
 from ulna.serve.activities.touching import steer, virtual_of
 from ulna.serve.contract.live import FaultEvent, LiveEvent, RefusedEvent, SaidEvent, StateEvent, TouchEvent
 from ulna.serve.contract.words import Do, DoFollow, DoGo, DoTakeBack, DoTouch, DoTrust, DoWithdraw
@@ -90,8 +90,10 @@ class Stepwise(Doing):
                 by_list.trust()
                 yield SaidEvent(sentence="The angles are taken for right again.")
             case DoGo():
-                self._follows = False
                 steer(virtual_of(self.stream.source), asked)
+                if self._follows:
+                    self._follows = False
+                    yield StateEvent(state=self.state())
             case DoFollow():
                 source = virtual_of(self.stream.source)
                 if asked.follows and self._hand is None:
@@ -153,11 +155,12 @@ class Stepwise(Doing):
                 yield RefusedEvent(sentence=f"Not taken: {event.reason}.")
                 self._play()
             case OfStep():
+                # the tone before the figures: these take their time
+                yield TouchEvent(touch=taken_said(self.by_list, event), sentences=lines_of(self.by_list, event))
                 self._evaluate()
-                yield TouchEvent(
-                    touch=taken_said(self.by_list, event), sentences=lines_of(self.by_list, event, self._so_far)
-                )
                 yield StateEvent(state=self.state())
+                for line in fallen_lines(self.by_list, event.step, self._so_far):
+                    yield SaidEvent(sentence=line)
                 if self.by_list.step is None:
                     yield SaidEvent(sentence=DONE)
                 self._play()

@@ -68,6 +68,7 @@ ARTICULATION = TestKind(
     evaluate=_evaluate,
     limits={"L_Dia": 0.060},
     growing=None,
+    moved=False,
     length_errors=False,
     again="Touch the ball again in every orientation of the probe.",
     look="Look at the probe: tight, straight, its ball clean and unworn; an offset shows here first.",

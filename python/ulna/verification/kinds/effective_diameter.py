@@ -80,6 +80,7 @@ EFFECTIVE_DIAMETER = TestKind(
     evaluate=_evaluate,
     limits={"Diameter_max": 0.040},
     growing=None,
+    moved=False,
     length_errors=False,
     again="Touch the ball again, over half of it.",
     look="Look at the probe's ball, clean and unworn: is it the one that the arm file has?",

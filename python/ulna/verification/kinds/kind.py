@@ -49,6 +49,8 @@ class TestKind(Generic[Table]):
     growing: int | None
     """From how many touches of a measurement on its figures are known, and grow with each further one, where it is
     touched step by step; None: of a measurement of which all is touched."""
+    moved: bool
+    """Whether elbow and wrist are to move between touches of a measurement: the same posture again tells nothing."""
     length_errors: bool
     """Whether its first figure is of errors of lengths, which are drawn over the length."""
     again: str

@@ -105,6 +105,7 @@ LENGTH = TestKind(
     evaluate=_evaluate,
     limits={"E_Uni": {"a": 0.040, "b": 40000.0}, "E_Bi": {"a": 0.050, "b": 40000.0}},
     growing=None,
+    moved=False,
     length_errors=True,
     again="Touch the length again in that place, both ends.",
     look="Look at the bar: its seats clean, its supports as always, as warm as the protocol says.",

@@ -99,6 +99,7 @@ SINGLE_POINT = TestKind(
     evaluate=_evaluate,
     limits={"SPAT_2S": 0.060},
     growing=2,
+    moved=True,
     length_errors=False,
     again="Touch the seat again, elbow and wrist moved between touches, the probe pressed lightly.",
     look="Look at the probe (tight, its ball clean and unworn) and at its seat (clean, does not give way).",

@@ -61,6 +61,7 @@ SPHERE = TestKind(
     evaluate=_evaluate,
     limits={"P_Size": 0.040, "P_Form": 0.080},
     growing=None,
+    moved=False,
     length_errors=False,
     again="Touch the ball again, over half of it.",
     look="Look at the probe's ball and at the ball of the check: clean, unworn, nothing loose.",

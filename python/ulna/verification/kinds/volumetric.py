@@ -137,6 +137,7 @@ VOLUMETRIC = TestKind(
     evaluate=_evaluate,
     limits={"Volumetric_max": 0.080, "Volumetric_2S": 0.080},
     growing=None,
+    moved=False,
     length_errors=True,
     again="Touch the bar again in those places, both ends.",
     look="Look at the bars: their seats clean, their supports as always, as warm as the protocol says.",
