@@ -23,6 +23,8 @@ from ulna.documents.languages.words import dictionary
 from ulna.formats.models import OneOf, Strict
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.ground.errors import UlnaInputError
+from ulna.verification.as_it_falls import so_far
+from ulna.verification.file import load_verify
 from ulna.verification.kinds.kind import TestKind, TestTable
 from ulna.verification.kinds.registry import KINDS, by_name, kind_of
 from ulna.verification.kinds.steps import Step
@@ -30,7 +32,9 @@ from ulna.verification.plan_files import touches_table
 from ulna.verification.player import Played, play
 from ulna.verification.profile import Profile, load_profile
 from ulna.verification.profile_tables import ProfileFile
+from ulna.verification.steps import steps_of
 from ulna.verification.test_plan import TestPlan, make_test_plan
+from ulna.verification.to_touch import work_list
 from ulna.verification.verify import Verification
 
 HEAD = (
@@ -134,6 +138,36 @@ def test_an_exact_arm_finds_nothing(kind: TestKind[Any], table: TestTable, truth
     assert verdicts == {key: "pass" if key in kind.limits else None for key in every}
     lengths = [judged.single.measured_mm for judged in next(iter(found.states[0].figures.values())).values]
     assert ("lengths.svg" in found.files) == (kind.length_errors and None not in lengths)
+
+
+@every_example
+def test_its_values_fall_while_it_is_touched(kind: TestKind[Any], table: TestTable, truth: Arm, tmp_path: Path) -> None:
+    """Step by step: a measurement that is whole has the values of the whole test, and none is taken for another step;
+    where a kind grows, its values are those of as many touches."""
+    profile = load_profile(profile_with(tmp_path, table).name, tmp_path, "")
+    whole = evaluated(tmp_path, profile, play(profile, truth, 1e-6, 0.002, seed=3), truth)
+    plan = load_verify(tmp_path / "plan.toml", tmp_path / "arm.toml")
+    work = work_list(plan, next(iter(truth.probes.values())).ball_mm)
+    work.check("as-left")
+    assert work.steps == steps_of(profile.file)
+    (touches,) = plan.touches["as-left"]
+    final = {(key, one) for key, each in values(whole).items() for one in each}
+    for count in range(1, len(work.listed) + 1):
+        at_mm = touches.p_mm[count - 1]
+        earlier = {k: touches.p_mm[k] for k in range(count - 1)}
+        assert work.unlikely(count - 1, at_mm, earlier) is None
+        rows = np.arange(count)
+        some = dataclasses.replace(plan, touches={"as-left": [touches.where(rows)]})
+        known = so_far(some, "as-left", work, rows.tolist())
+        there = {(each.definition.key, each.judged.single.value_mm) for each in known.values}
+        if count == len(work.listed):
+            assert there == final
+            assert known.not_yet == {}
+        elif kind.growing is None and len({figure.key for figure in kind.figures(table)}) == 1:
+            assert there <= final or kind.name == "articulation"
+        elif kind.growing is not None:
+            own = [part for part in work.parts if len(set(part) & set(range(count))) >= kind.growing]
+            assert len(there) == len(own) * len(kind.figures(table))
 
 
 @every_example

@@ -84,6 +84,13 @@ export const look = (body: Say.StudyAsked) => got<Say.Looked>(client.POST("/api/
 export const makeStudy = (body: Say.StudyAsked) =>
 	got<Say.StudyMade>(client.POST("/api/v1/studies", { body }));
 
+export const playGuided = () => got<Say.PlayGuided>(client.POST("/api/v1/tests/play"));
+export const profiles = () => got<Say.Profiles>(client.GET("/api/v1/tests/profiles"));
+export const wants = (profile: string, arm: string) =>
+	got<Say.ProfileWants>(client.GET("/api/v1/tests/wants", { params: { query: { profile, arm } } }));
+export const makeTest = (body: Say.TestAsked) =>
+	got<Say.TestPlanMade>(client.POST("/api/v1/tests", { body }));
+
 export const equipment = () => got<Say.AllEquipment>(client.GET("/api/v1/records/equipment"));
 export const register = (body: Say.RegisterAsked) =>
 	got<Say.EquipmentWhole>(client.POST("/api/v1/records/equipment", { body }));

@@ -80,7 +80,7 @@ class ReadOut:
                 f"{stream.stated.path}: key 'map.channels': {channels} channels, but arm '{arm.arm.name}' has "
                 f"{arm.arm.n} joints; expected one for each, q1 first. Name them in a source file."
             )
-        self._sample_rad = _sample_noise(stream, arm)
+        self._sample_rad = sample_noise(stream, arm)
         if self._sample_rad is None and arm.noise.variance_mm2 == 0.0 and by_itself:
             raise UlnaInputError(f"arm '{arm.arm.name}': {UNSURE}.")
         self._by_itself = by_itself
@@ -199,7 +199,7 @@ class ReadOut:
         return next((point for point in points if point.name == self.to), None)
 
 
-def _sample_noise(stream: Stream, arm: Calibrated) -> F64 | None:
+def sample_noise(stream: Stream, arm: Calibrated) -> F64 | None:
     """(n,) standard deviation of one sample of each encoder: as source file, calibration or somebody states it, never
     less than what whole counts leave open; None where nobody knows."""
     mapping = stream.mapping

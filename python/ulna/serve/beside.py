@@ -23,7 +23,7 @@ def usable(desk: Desk, digest: str) -> Path:
     path = desk.path(digest)
     if desk.brought(path) and path.suffix.lower() == ".toml":
         document, _ = read_toml(path, "a file of Ulna (TOML)")
-        for key, value in _named(document):
+        for key, value in named_in(document):
             if _is_place(value):
                 raise UlnaInputError(
                     f"{path.name}: key '{key}': got '{value[:80]}', a place of its own; expected the name of a file "
@@ -32,13 +32,14 @@ def usable(desk: Desk, digest: str) -> Path:
     return path
 
 
-def _named(table: Any) -> Iterator[tuple[str, str]]:
+def named_in(table: Any) -> Iterator[tuple[str, str]]:
+    """Key and name of each file that a document names."""
     for key, value in table.items():
         if key in KEYS and isinstance(value, str):
             yield key, value
         for each in value if isinstance(value, list) else [value]:
             if isinstance(each, dict):
-                yield from _named(each)
+                yield from named_in(each)
 
 
 def _is_place(value: str) -> bool:

@@ -37,6 +37,8 @@ RIGHTS = (
     Right("/tables/look", "operator"),
     Right("/studies", "operator"),
     Right("/plans", "operator"),
+    Right("/tests", "operator"),
+    Right("/tests/play", "operator"),
     Right("/activities", "operator"),
     Right("/activities/{name}/do", "operator"),
     Right("/jobs", "operator"),

@@ -40,7 +40,7 @@ class Workshop:
         self.hub = Hub()
         self.desk = Desk(folder / DESK, folder / SESSIONS, folder / JOBS)
         self.allowed = allowed
-        self.hall = Hall(folder / SESSIONS, self.desk, self.hub, allowed)
+        self.hall = Hall(folder / SESSIONS, self.desk, self.records.bench, self.hub, allowed)
         self.jobs = Jobs(self.hub, self.desk.take)
         self.proposals = Proposals(folder / PROPOSALS, partial(issued, self.desk))
 

@@ -10,6 +10,11 @@ from ulna.formats.numbers import Amount, Positive
 Ends = Literal["seats", "balls", "faces", "opposite-faces"]
 
 
+OFF_MM = 5.0
+_OFF_OF_ENDS_MM: dict[Ends, float] = {"seats": OFF_MM, "balls": 100.0, "faces": 50.0, "opposite-faces": 50.0}
+"""A seat is touched in one place; a ball all around, a face anywhere on it."""
+
+
 class CertifiedTable(Strict):
     """What all of them have."""
 
@@ -17,6 +22,12 @@ class CertifiedTable(Strict):
     """Its keys that hold lengths."""
 
     kind: str
+
+    @property
+    def off_mm(self) -> float:
+        """By how much two touches of it may be nearer or farther than its size says before it is asked whether the
+        right place was touched: more than any arm errs that is worth a test."""
+        return OFF_MM
 
     def in_mm(self, mm: float) -> dict[str, Any]:
         """Keys that are given, lengths in mm; mm: in the file's length unit."""
@@ -59,6 +70,10 @@ class CalibratedLengthTable(CertifiedTable):
     """1/K"""
     u_expansion: Amount | None = None
     """Standard uncertainty of that, 1/K."""
+
+    @property
+    def off_mm(self) -> float:
+        return _OFF_OF_ENDS_MM[self.ends]
 
 
 ARTEFACTS: dict[str, type[CertifiedTable]] = {"ball": BallTable, "length": CalibratedLengthTable}

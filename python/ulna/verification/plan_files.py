@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,10 @@ import polars as pl
 from ulna.formats.toml_text import toml_key, toml_value
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.kinds.steps import Step
+from ulna.verification.own_readings import table_of
 from ulna.verification.profile import Profile, shipped
 from ulna.verification.steps import artefacts_of, steps_of
+from ulna.verification.tables import State
 
 PLAN = "plan.toml"
 TOUCHES = "touches.csv"
@@ -36,8 +38,13 @@ class Filled:
 EMPTY = Filled()
 
 
-def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) -> str:
-    """The text of a verify file in a folder: what is known filled in, the rest to be filled in where a '#' stands."""
+def plan_toml(
+    profile: Profile, filled: Filled, encoders: bool, folder: Path, states: Sequence[State] | None = None
+) -> str:
+    """The text of a verify file in a folder: what is known filled in, the rest to be filled in where a '#' stands.
+
+    states: with a table of touches of each, by its name; None: one table, of the list.
+    """
     own = profile.path not in shipped().values()
     name = _path_from(folder, profile.path) if own else profile.file.name
     lines = [
@@ -81,11 +88,16 @@ def plan_toml(profile: Profile, filled: Filled, encoders: bool, folder: Path) ->
         "",
         _head("fixture", filled.fixture_mm, "how still the artefacts stand: standard uncertainty"),
         _line("u", filled.fixture_mm, "0.001"),
-        "",
-        "[[readings]]",
-        f"file = {toml_value(TOUCHES)}",
-        'state = "as-left"   # or "as-found"; both may be in one plan',
     ]
+    for state in states or ():
+        lines += ["", "[[readings]]", f"file = {toml_value(table_of(state))}", f"state = {toml_value(state)}"]
+    if states is None:
+        lines += [
+            "",
+            "[[readings]]",
+            f"file = {toml_value(TOUCHES)}",
+            'state = "as-left"   # or "as-found"; both may be in one plan',
+        ]
     return "\n".join(lines) + "\n"
 
 

@@ -68,7 +68,7 @@ def play(
     # a ball stands beside every virtual arm, so that one seed plays the same touches whether it is used or not
     wanted = {each.name: each for each in (WantedBall(), *artefacts_of(profile.file))}
     stated, true_mm = _stated(wanted.values(), range_mm, rng)
-    player = _Player(mover, tip_mm, wanted, true_mm, 0.5 * range_mm, touch_mm, rng)
+    player = StepPlayer(mover, tip_mm, wanted, true_mm, 0.5 * range_mm, touch_mm, rng)
     steps = steps_of(profile.file)
     runs = [list(run) for _, run in groupby(steps, lambda step: (step.test, step.artefact, step.position))]
     parts: list[F64] = []
@@ -108,10 +108,13 @@ def _stated(
 
 
 @dataclass
-class _Player:
+class StepPlayer:
+    """Stands artefacts in the reach of a true arm, and touches them."""
+
     mover: Mover
     tip_mm: float
     wanted: dict[str, Wanted]
+    """By the name that steps have."""
     true_mm: dict[str, float]
     reach_mm: float
     touch_mm: float
@@ -121,7 +124,7 @@ class _Player:
         """(N, n) true postures at the steps of one artefact in one place."""
         first = steps[0]
         artefact = self.wanted[first.artefact]
-        local_mm = artefact.touched(steps, self.true_mm.get(artefact.name, 0.0), self.tip_mm)
+        local_mm = artefact.touched(steps, self.true_mm.get(first.artefact, 0.0), self.tip_mm)
         between = artefact.between(first.position)
         probe = np.zeros(len(steps) * PLACES, dtype=np.int64)
         for _ in range(ROUNDS):

@@ -136,7 +136,7 @@ def verify(plan: str | Path, arm: ArmLike | None = None, progress: Progress | No
 
 def evaluated(stated: VerifyPlan, progress: Progress | None = None) -> Verification:
     """What was read, evaluated. Raises UlnaInputError for whatever cannot be."""
-    rule, limits = _rule(stated), _limits(stated)
+    rule, limits = rule_of_plan(stated), _limits(stated)
     processes = _processes(stated)
     states = [state for state in STATES if state in stated.touches]
     found = []
@@ -180,7 +180,7 @@ def _state(
     return StateResult(state, tests, departures)
 
 
-def _rule(plan: VerifyPlan) -> DecisionRule:
+def rule_of_plan(plan: VerifyPlan) -> DecisionRule:
     """As the profile says, or the verify file in its place. Raises UlnaInputError for "rU" without its r."""
     table, file = plan.profile.file.decision, plan.file
     own = file.rule is not None

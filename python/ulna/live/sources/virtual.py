@@ -70,7 +70,9 @@ class VirtualSource:
         self.hello = Hello(tuple(f"q{k + 1}" for k in range(arm.n)), told, f"virtual arm '{arm.name}'", rate_hz)
         self._turn: F64 = np.array([float(n or 0) if unit == "counts" else TURN[unit] for n in turns])
         self._counts = unit == "counts"
-        self._rate_hz, self._noise_rad, self._speed, self._seconds = rate_hz, noise_rad, speed, seconds
+        self._rate_hz, self._speed, self._seconds = rate_hz, speed, seconds
+        self.noise_rad = noise_rad
+        """Standard deviation of each encoder in one sample."""
         self._noise, self._rng = np.random.default_rng([seed, 0]), np.random.default_rng([seed, 2])
         self._wanders, self._told = wanders, SimpleQueue[F64]()
         self._poses: deque[F64] | None = None if poses_rad is None else deque(poses_rad)
@@ -142,7 +144,7 @@ class VirtualSource:
         except StopIteration:
             raise self._ended("the last posture was read.") from None
         self._given += n
-        read = q_rad - zero_rad + self._noise_rad * self._noise.standard_normal(q_rad.shape)
+        read = q_rad - zero_rad + self.noise_rad * self._noise.standard_normal(q_rad.shape)
         if comes.any():
             self._here_rad = q_rad[comes][-1]
         raw = (read * (self._turn / (2 * math.pi)))[comes]

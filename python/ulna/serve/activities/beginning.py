@@ -20,13 +20,17 @@ from ulna.live.purpose import purpose_of
 from ulna.live.readout import ReadOut
 from ulna.live.session import Session
 from ulna.live.stream import Stream
+from ulna.records.bench import Bench
 from ulna.serve.activities.activity import Doing
+from ulna.serve.activities.checking import begun_check
 from ulna.serve.activities.commissioning import Commissioning
 from ulna.serve.activities.measuring import Measuring
+from ulna.serve.activities.testing import begun_test
 from ulna.serve.activities.touching import Touching
 from ulna.serve.activities.watching import Watching
 from ulna.serve.beside import usable
 from ulna.serve.contract.activities import Begin, BeginCommission, BeginMeasure, BeginTouch, BeginWatch
+from ulna.serve.contract.guided import BeginCheckTouches, BeginTestTouches
 from ulna.serve.desk import Desk
 from ulna.serve.sources import Allowed
 
@@ -39,6 +43,8 @@ class Place:
     """Where an activity works."""
 
     desk: Desk
+    bench: Bench
+    """The record."""
     folder: Path
     """Its own; made when something is kept."""
     who: str
@@ -84,18 +90,32 @@ def _measure(asked: BeginMeasure, stream: Stream, place: Place) -> Doing:
     return Measuring(out, place.folder, asked.by)
 
 
+def _check(asked: BeginCheckTouches, stream: Stream, place: Place) -> Doing:
+    return begun_check(asked, stream, place.desk, place.bench, place.folder)
+
+
+def _test(asked: BeginTestTouches, stream: Stream, place: Place) -> Doing:
+    return begun_test(asked, stream, place.desk, place.folder)
+
+
 BEGINNINGS: dict[type, Callable[[Any, Stream, Place], Doing]] = {
     BeginWatch: _watch,
     BeginCommission: _commission,
     BeginTouch: _touch,
     BeginMeasure: _measure,
+    BeginCheckTouches: _check,
+    BeginTestTouches: _test,
 }
 """What was asked → who begins it."""
 
 
+Kept = BeginTouch | BeginCheckTouches | BeginTestTouches
+"""What goes on after anything."""
+
+
 def needs_angles(asked: Begin) -> bool:
     """Whether a stream without a unit is of no use."""
-    return isinstance(asked, BeginTouch | BeginMeasure)
+    return isinstance(asked, Kept | BeginMeasure)
 
 
 def begun(asked: Begin, stream: Stream, place: Place) -> Doing:
@@ -103,7 +123,7 @@ def begun(asked: Begin, stream: Stream, place: Place) -> Doing:
     return BEGINNINGS[type(asked)](asked, stream, place)
 
 
-def keep_asked(asked: BeginTouch, place: Place, at: str) -> None:
+def keep_asked(asked: Kept, place: Place, at: str) -> None:
     """How a session was asked for, so that it can go on after anything."""
     if not place.folder.is_dir():
         raise UlnaInputError(f"{place.folder.name}: its folder is gone. Begin another session.")

@@ -7,15 +7,20 @@ import secrets
 import threading
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from ulna.ground.errors import UlnaInputError
 from ulna.live.ending import JOURNAL, RESULT, touches_in
-from ulna.serve.activities.beginning import ABOUT, Place
+from ulna.records.bench import Bench
+from ulna.serve.activities.beginning import ABOUT, Kept, Place
+from ulna.serve.activities.checking import CHECK
 from ulna.serve.activities.running import Running
+from ulna.serve.activities.testing import FOLDER as TESTED
 from ulna.serve.contract import activities as wire
 from ulna.serve.contract.activities import Begin, BeginTouch
+from ulna.serve.contract.guided import BeginCheckTouches, BeginTestTouches
 from ulna.serve.contract.words import Do
 from ulna.serve.desk import Desk
 from ulna.serve.hub import Hub
@@ -26,23 +31,46 @@ KEPT = 20
 """Activities that are over and still can be looked at."""
 
 
+LEFT = (RESULT, "study.toml", CHECK, TESTED)
+"""In the folder of a session that is over."""
+_KEPT: TypeAdapter[Kept] = TypeAdapter(Annotated[Kept, Field(discriminator="kind")])
+
+
+def _kept_in(folder: Path) -> tuple[Kept, str]:
+    """How a session was asked for, and when it began."""
+    document = json.loads((folder / ABOUT).read_text(encoding="utf-8"))
+    return _KEPT.validate_json(json.dumps(document["asked"])), str(document.get("begun", ""))
+
+
+def _plan_of(asked: Kept) -> str:
+    match asked:
+        case BeginTouch():
+            return asked.plan
+        case BeginCheckTouches():
+            return asked.protocol
+        case BeginTestTouches():
+            return asked.test
+    raise AssertionError(asked)
+
+
 class Hall:
     """Of one bench."""
 
-    def __init__(self, folder: Path, desk: Desk, hub: Hub, allowed: Allowed) -> None:
+    def __init__(self, folder: Path, desk: Desk, bench: Bench, hub: Hub, allowed: Allowed) -> None:
         """folder: of the sessions, one each. allowed: which sources may be opened."""
-        self._folder, self._desk, self._hub, self._allowed = folder, desk, hub, allowed
+        self._folder, self._desk, self._bench, self._hub, self._allowed = folder, desk, bench, hub, allowed
         self._lock = threading.Lock()
         self._activities: dict[str, Running] = {}
 
     def begin(self, asked: Begin, who: str) -> wire.Activity:
         """A new one, or an interrupted session that goes on. who: begins it. Raises UlnaInputError."""
-        name = self._name(asked)
+        name, asked = self._name(asked), self._as_kept(asked)
         with self._lock:
             busy = next((each for each in self._activities.values() if each.running), None)
             if busy is not None:
                 raise NotNowError(f"'{busy.name}' is still going on. End it first.")
-            running = Running(name, asked, Place(self._desk, self._folder / name, who, self._allowed), self._hub)
+            place = Place(self._desk, self._bench, self._folder / name, who, self._allowed)
+            running = Running(name, asked, place, self._hub)
             self._activities.pop(name, None)
             self._activities[name] = running
             for old in list(self._activities)[:-KEPT]:
@@ -82,21 +110,30 @@ class Hall:
         return found
 
     def _name(self, asked: Begin) -> str:
-        if isinstance(asked, BeginTouch) and asked.go_on is not None:
+        if isinstance(asked, Kept) and asked.go_on is not None:
             if asked.go_on not in {each.id for each in self._interrupted()}:
                 raise NotThereError(f"session '{asked.go_on[:80]}': none that can go on. Begin another.")
             return asked.go_on
         return f"{datetime.now(UTC):%Y-%m-%d-%H%M%S}-{secrets.token_hex(2)}"
 
+    def _as_kept(self, asked: Begin) -> Begin:
+        """A list that goes on is the one that it was: only where readings come from may be another."""
+        if not isinstance(asked, BeginCheckTouches | BeginTestTouches) or asked.go_on is None:
+            return asked
+        kept, _ = _kept_in(self._folder / asked.go_on)
+        if not isinstance(kept, type(asked)):
+            raise NotThereError(f"session '{asked.go_on[:80]}': it is none of '{asked.kind}'. Begin another.")
+        return kept.model_copy(update={"go_on": asked.go_on, "source": asked.source, "by": asked.by})
+
     def _interrupted(self) -> list[wire.Unfinished]:
         found = []
         for about in sorted(self._folder.glob(f"*/{ABOUT}"), reverse=True):
             folder = about.parent
-            if (folder / RESULT).exists() or (folder / "study.toml").exists() or not (folder / JOURNAL).exists():
+            over = any((folder / name).exists() for name in LEFT)
+            if over or not (folder / JOURNAL).exists():
                 continue
             try:
-                document = json.loads(about.read_text(encoding="utf-8"))
-                asked = BeginTouch.model_validate_json(json.dumps(document["asked"]))
+                asked, begun = _kept_in(folder)
                 touches = len(touches_in(folder / JOURNAL))
             except (OSError, ValueError, KeyError, TypeError, ValidationError, UlnaInputError):
                 continue  # nobody can go on with it; its journal stays where it is
@@ -105,9 +142,9 @@ class Hall:
                     id=folder.name,
                     kind=asked.kind,
                     touches=touches,
-                    begun=str(document.get("begun", "")),
+                    begun=begun,
                     arm=asked.arm,
-                    plan=asked.plan,
+                    plan=_plan_of(asked),
                     source=asked.source,
                 )
             )

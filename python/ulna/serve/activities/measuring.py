@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import numpy as np
-
-from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
 from ulna.live.faults import ORDINARY
 from ulna.live.features import FEATURES
@@ -17,7 +14,7 @@ from ulna.live.readout import ReadOut, Said, Set, Tip
 from ulna.live.stream import Frames
 from ulna.live.trigger import Refused
 from ulna.serve.activities.activity import Doing, unknown
-from ulna.serve.activities.seen import Seen
+from ulna.serve.activities.seen import Seen, tip_covariance
 from ulna.serve.activities.touching import steer, virtual_of
 from ulna.serve.contract import activities as wire
 from ulna.serve.contract.live import FaultEvent, LiveEvent, RefusedEvent, SaidEvent, StateEvent, TipEvent
@@ -101,19 +98,9 @@ class Measuring(Doing):
         calibrated = self.out.arm
         probe = calibrated.arm.probe_index(calibrated.probe)
         rests = 1.0 if self._tip.stillness is not None and self._tip.stillness.still else 0.0
-        doubtful, known = self.out.doubt is not None, self._covariance_mm2(self._tip, probe)
+        lost = any(each.why is not None for each in self._tip.figures)
+        doubtful, known = self.out.doubt is not None, None if lost else tip_covariance(calibrated, self._tip.q_rad)
         return Seen(calibrated.arm, probe).newest(self._tip.t_s, self._tip.q_rad, doubtful, rests, known)
-
-    def _covariance_mm2(self, tip: Tip, probe: int) -> F64 | None:
-        """(6,) of the tip, from the calibrated parameters; None where it is not determined."""
-        arm, conditions = self.out.arm.arm, self.out.arm.conditions
-        known = arm.uncertainty
-        if known is None or self.out.arm.without is not None or any(each.why is not None for each in tip.figures):
-            return None
-        columns = np.array([arm.parameter_names.index(name) for name in known.names], dtype=np.int64)
-        pose = np.ascontiguousarray(tip.q_rad[None])
-        found: F64 = arm.core.tip_covariance(pose, probe, columns, known.matrix, **conditions)[0]
-        return found
 
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """The points as a table, where there are any."""

@@ -17,10 +17,10 @@ from ulna.live.rounds import Round
 from ulna.live.source import SourceEnded
 from ulna.live.sources.virtual import VirtualSource
 from ulna.live.stream import Stream
-from ulna.serve.activities.beginning import Place, begun, keep_asked, needs_angles
+from ulna.serve.activities.beginning import Kept, Place, begun, keep_asked, needs_angles
 from ulna.serve.activities.opened import stated_source
 from ulna.serve.contract import activities as wire
-from ulna.serve.contract.activities import Begin, BeginTouch
+from ulna.serve.contract.activities import Begin
 from ulna.serve.contract.live import EndedEvent, FaultEvent, LiveEvent, SaidEvent, StreamEvent
 from ulna.serve.contract.words import Do, DoEnd
 from ulna.serve.frames import packed
@@ -54,7 +54,7 @@ class Running:
             opening.callback(source.close)
             stream = Stream(source, stated, needs_angles(asked))
             self._doing = begun(asked, stream, place)
-            if isinstance(asked, BeginTouch):
+            if isinstance(asked, Kept):
                 keep_asked(asked, place, self.begun_at)
             self._close = opening.pop_all()
         self._stream = stream

@@ -9,6 +9,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.arm.frames.bodies import bodies
 from ulna.ground.arrays import F64
+from ulna.live.figures import Calibrated
 from ulna.live.postures import near_stops
 from ulna.serve.contract.arms import Bodies
 from ulna.serve.frames import Flag, Newest
@@ -40,6 +41,17 @@ class Seen:
         tip_mm = self.arm.core.tip(np.ascontiguousarray(q_rad[None]), self.probe)[0]
         stand = np.array(bodies(self.arm, q_rad))[:, :3, :]
         return Newest(t_s, q_rad, tip_mm, covariance_mm2, rests, stand, flags)
+
+
+def tip_covariance(calibrated: Calibrated, q_rad: F64) -> F64 | None:
+    """(6,) mm² of the tip in a posture, from the calibrated parameters; None where nobody knows."""
+    arm, known = calibrated.arm, calibrated.arm.uncertainty
+    if known is None or calibrated.without is not None:
+        return None
+    columns = np.array([arm.parameter_names.index(name) for name in known.names], dtype=np.int64)
+    pose, probe = np.ascontiguousarray(q_rad[None]), arm.probe_index(calibrated.probe)
+    found: F64 = arm.core.tip_covariance(pose, probe, columns, known.matrix, **calibrated.conditions)[0]
+    return found
 
 
 def bodies_of(arm: Arm, q_rad: F64, probe: int = 0) -> Bodies:

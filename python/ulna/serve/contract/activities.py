@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ulna.serve.contract.arms import Bodies
+from ulna.serve.contract.guided import BeginCheckTouches, BeginTestTouches, CheckState, TestState
 from ulna.serve.contract.model import Asked, Name, Said, Sentence, Sha256, Value
 from ulna.serve.contract.sources import Source
 
@@ -62,7 +63,10 @@ class BeginMeasure(Asked):
     by: Literal["key", "button", "still"] = "still"
 
 
-Begin = Annotated[BeginWatch | BeginCommission | BeginTouch | BeginMeasure, Field(discriminator="kind")]
+Begin = Annotated[
+    BeginWatch | BeginCommission | BeginTouch | BeginMeasure | BeginCheckTouches | BeginTestTouches,
+    Field(discriminator="kind"),
+]
 
 # ------------------------------------------------------------ what is known of it
 
@@ -251,7 +255,9 @@ class MeasureState(Said):
     remarks: list[Sentence]
 
 
-State = Annotated[WatchState | CommissionState | TouchState | MeasureState, Field(discriminator="kind")]
+State = Annotated[
+    WatchState | CommissionState | TouchState | MeasureState | CheckState | TestState, Field(discriminator="kind")
+]
 
 
 class Stream(Said):
@@ -296,7 +302,21 @@ class Activity(Said):
 class Left(Said):
     """A file that an activity left."""
 
-    role: Literal["arm", "plan", "source", "study", "result", "readings", "journal", "evaluation", "noise"]
+    role: Literal[
+        "arm",
+        "plan",
+        "source",
+        "study",
+        "result",
+        "readings",
+        "journal",
+        "evaluation",
+        "noise",
+        "check",
+        "test",
+        "verification",
+        "values",
+    ]
     sha256: Sha256
     name: Name
 
@@ -310,6 +330,7 @@ class Unfinished(Said):
     begun: str
     arm: Sha256
     plan: Sha256 | None
+    """A plan or a study, a protocol, a test."""
     source: str
 
 

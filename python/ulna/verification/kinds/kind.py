@@ -46,6 +46,11 @@ class TestKind(Generic[Table]):
     limits: Mapping[str, float | Mapping[str, float]]
     """Examples of limits by the short name of a figure, mm, of no maker: they stand in plans, and in those that a
     virtual arm plays. {a, b} of one that grows with the length."""
+    growing: int | None
+    """From how many touches of a measurement on its figures are known, and grow with each further one, where it is
+    touched step by step; None: of a measurement of which all is touched."""
+    moved: bool
+    """Whether elbow and wrist are to move between touches of a measurement: the same posture again tells nothing."""
     length_errors: bool
     """Whether its first figure is of errors of lengths, which are drawn over the length."""
     again: str

@@ -12,6 +12,8 @@ import numpy as np
 
 from ulna.artefacts.surface import GOLDEN
 from ulna.ground.arrays import F64
+from ulna.verification.bench import Bench
+from ulna.verification.certified import BallTable, CalibratedLengthTable, CertifiedTable
 from ulna.verification.kinds.steps import Step
 
 BALL_MM = 25.0
@@ -41,8 +43,30 @@ class Wanted(ABC):
     """Plans list artefacts by it, then in the order of the tests."""
     SIZE: ClassVar[str | None]
     """The key of its length or diameter in its table; None where it has none."""
+    KIND: ClassVar[str]
+    """Of its table in a verify file."""
 
     name: str
+
+    def ranks_with(self, other: Wanted) -> bool:
+        """Whether the same artefacts of a file can be this one and another one; those of a list rise in size."""
+        return type(self) is type(other)
+
+    @abstractmethod
+    def fits(self, table: CertifiedTable) -> bool:
+        """Whether an artefact of a verify file, or of a protocol, can be what is wanted."""
+
+    @abstractmethod
+    def size_of(self, table: CertifiedTable) -> float:
+        """The length or diameter that it states, in its file's unit; 0 where it has none."""
+
+    @abstractmethod
+    def true_mm(self, bench: Bench, name: str, test: str) -> float:
+        """The same of an artefact by its name, at the temperature of the test. Raises UlnaInputError."""
+
+    @abstractmethod
+    def apart(self, one: Step, other: Step, true_mm: float, tip_mm: float) -> tuple[float, float]:
+        """Between which distances the ball's centres are at two steps in one of its places; sizes as in `touched`."""
 
     @abstractmethod
     def keys(self, range_mm: float | None = None) -> list[Key]:
@@ -68,8 +92,22 @@ class WantedBall(Wanted):
 
     RANK: ClassVar[int] = 0
     SIZE: ClassVar[str | None] = "diameter"
+    KIND: ClassVar[str] = "ball"
 
     name: str = "ball"
+
+    def fits(self, table: CertifiedTable) -> bool:
+        return isinstance(table, BallTable)
+
+    def size_of(self, table: CertifiedTable) -> float:
+        assert isinstance(table, BallTable)
+        return table.diameter
+
+    def true_mm(self, bench: Bench, name: str, test: str) -> float:
+        return bench.ball(name, test).diameter_mm
+
+    def apart(self, one: Step, other: Step, true_mm: float, tip_mm: float) -> tuple[float, float]:
+        return 0.0, true_mm + tip_mm
 
     def keys(self, range_mm: float | None = None) -> list[Key]:
         return [
@@ -101,6 +139,7 @@ class WantedLength(Wanted):
 
     RANK: ClassVar[int] = 1
     SIZE: ClassVar[str | None] = "length"
+    KIND: ClassVar[str] = "length"
 
     share: float
     """Of the measuring range."""
@@ -110,6 +149,23 @@ class WantedLength(Wanted):
     def faces(self) -> bool:
         """Whether it ends in faces."""
         return self.ends == "opposite-faces"
+
+    def ranks_with(self, other: Wanted) -> bool:
+        return isinstance(other, WantedLength) and self.faces == other.faces
+
+    def fits(self, table: CertifiedTable) -> bool:
+        return isinstance(table, CalibratedLengthTable) and (table.ends == "opposite-faces") == self.faces
+
+    def size_of(self, table: CertifiedTable) -> float:
+        assert isinstance(table, CalibratedLengthTable)
+        return table.length
+
+    def true_mm(self, bench: Bench, name: str, test: str) -> float:
+        return bench.length(name, test).calibrated_mm
+
+    def apart(self, one: Step, other: Step, true_mm: float, tip_mm: float) -> tuple[float, float]:
+        gap_mm = 0.0 if one.feature == other.feature else true_mm + (tip_mm if self.faces else 0.0)
+        return gap_mm, gap_mm
 
     def keys(self, range_mm: float | None = None) -> list[Key]:
         length = 1000.0 if range_mm is None else self.stated(range_mm)["length"]
@@ -159,10 +215,23 @@ class WantedSeat(Wanted):
 
     RANK: ClassVar[int] = 2
     SIZE: ClassVar[str | None] = None
+    KIND: ClassVar[str] = "seat"
 
     name: str = ""
     places: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Position → least and most share of the reach."""
+
+    def fits(self, table: CertifiedTable) -> bool:
+        return False
+
+    def size_of(self, table: CertifiedTable) -> float:
+        return 0.0
+
+    def true_mm(self, bench: Bench, name: str, test: str) -> float:
+        return 0.0
+
+    def apart(self, one: Step, other: Step, true_mm: float, tip_mm: float) -> tuple[float, float]:
+        return 0.0, 0.0
 
     def keys(self, range_mm: float | None = None) -> list[Key]:
         return []
