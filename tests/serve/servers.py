@@ -120,6 +120,18 @@ def said(answer: httpx.Response) -> Any:
     return answer.json() if answer.content else None
 
 
+def untold(document: Any) -> list[str]:
+    """Sentences of what was answered, or told, that no catalogue can know."""
+    if isinstance(document, list):
+        return [each for one in document for each in untold(one)]
+    if not isinstance(document, dict):
+        return []
+    if set(document) == {"text", "template", "values"}:
+        own = [] if document["template"] is not None else [document["text"]]
+        return own + untold(list(document["values"].values()))
+    return untold(list(document.values()))
+
+
 def wait_for(condition: Callable[[], bool], what: str) -> None:
     end = time.monotonic() + PATIENCE_S
     while not condition():

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from tests.cli_runs import run
 from tests.pdf_reading import Pdf, holds
-from tests.serve.servers import Client, Threaded, apart
+from tests.serve.servers import Client, Threaded, apart, untold
 
 ROOT = Path(__file__).resolve().parents[2]
 PLATINUM = ROOT / "examples" / "platinum"
@@ -72,7 +72,10 @@ def test_a_check_and_its_history(client: Client, protocol: dict[str, object], tm
             figure["key"], figure["value"], figure["verdict"],
         )  # fmt: skip
         assert ours["centre_mm"] == figure["history"]["centre"]
-    assert [each["steps"] for each in found["advice"]] == [each["steps"] for each in theirs["advice"]]
+    assert [[step["text"] for step in each["steps"]] for each in found["advice"]] == [
+        each["steps"] for each in theirs["advice"]
+    ]
+    assert untold(found) == []
     assert client.get(f"/files/{earlier[0]}")["kind"] == "check"
 
 

@@ -5,6 +5,7 @@ type Schemas = components["schemas"];
 export type About = Schemas["About"];
 export type Me = Schemas["Me"];
 export type Value = Schemas["Value"];
+export type Sentence = Schemas["Wording"];
 export type BenchInfo = Schemas["BenchInfo"];
 export type Card = Schemas["Card"];
 export type ArmInfo = Schemas["ArmInfo"];

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import Decoder
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
@@ -50,7 +51,11 @@ class SerialWire:
             raise self._gone(error) from None
 
     def _gone(self, error: Exception) -> SourceEnded:
-        return SourceEnded(f"{self.device}: the cable was pulled, or the device is off ({_said(error)}).")
+        return SourceEnded(
+            worded(
+                "{device}: the cable was pulled, or the device is off ({why}).", device=self.device, why=_said(error)
+            )
+        )
 
     def close(self) -> None:
         """As `Wire`."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.ending import JOURNAL, RESULT, touches_in
 from ulna.serve.activities.beginning import ABOUT, Place
 from ulna.serve.activities.running import Running
@@ -40,7 +41,7 @@ class Hall:
         with self._lock:
             busy = next((each for each in self._activities.values() if each.running), None)
             if busy is not None:
-                raise NotNowError(f"'{busy.name}' is still going on. End it first.")
+                raise NotNowError(worded("'{session}' is still going on. End it first.", session=busy.name))
             running = Running(name, asked, Place(self._desk, self._folder / name), self._hub)
             self._activities.pop(name, None)
             self._activities[name] = running

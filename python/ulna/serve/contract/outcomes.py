@@ -17,7 +17,7 @@ class CheckedFigure(Said):
     value: Value
     limit: Value | None
     verdict: str | None
-    why: str | None
+    why: Sentence | None
     """Why there is no verdict."""
     centre_mm: float | None
     """Of its own history, as all that follows."""
@@ -66,7 +66,7 @@ class TestFigure(Said):
     value: Value
     limit: Value | None
     verdict: str | None
-    why: str | None
+    why: Sentence | None
     values: int
     """Of so many."""
 
