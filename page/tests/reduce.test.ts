@@ -52,7 +52,7 @@ const ACTIVITY: Activity = {
 	begun: "2026-11-30T16:00:00+00:00",
 	stream: {
 		scheme: "virtual",
-		device: "virtual arm",
+		device: { text: "virtual arm" },
 		channels: ["q1"],
 		rate_hz: 500,
 		silent_s: 0,

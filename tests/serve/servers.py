@@ -121,13 +121,13 @@ def said(answer: httpx.Response) -> Any:
 
 
 def untold(document: Any) -> list[str]:
-    """Sentences of what was answered, or told, that no catalogue can know."""
+    """Sentences of what was answered, or told, that no catalogue can know. What has no blank is a name or a symbol."""
     if isinstance(document, list):
         return [each for one in document for each in untold(one)]
     if not isinstance(document, dict):
         return []
     if set(document) == {"text", "template", "values"}:
-        own = [] if document["template"] is not None else [document["text"]]
+        own = [document["text"]] if document["template"] is None and " " in document["text"] else []
         return own + untold(list(document["values"].values()))
     return untold(list(document.values()))
 

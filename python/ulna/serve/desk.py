@@ -11,6 +11,7 @@ from pathlib import Path
 from ulna.formats.output import write_file
 from ulna.ground.errors import UlnaInputError
 from ulna.serve.contract.files import FileInfo, FileKind
+from ulna.serve.contract.model import shortened
 from ulna.serve.problems import NotThereError
 from ulna.serve.what import what_is
 
@@ -104,7 +105,7 @@ class Desk:
         digest, stat = _digest(path), path.stat()
         kind, what = what_is(path)
         at = datetime.fromtimestamp(stat.st_mtime, UTC).isoformat(timespec="seconds")
-        info = FileInfo(sha256=digest, name=path.name, size=stat.st_size, kind=kind, what=what[:4000], at=at)
+        info = FileInfo(sha256=digest, name=path.name, size=stat.st_size, kind=kind, what=shortened(what), at=at)
         with self._lock:
             self._kept.setdefault(digest, _Kept(path, info))
             if not self._kept[digest].path.exists():

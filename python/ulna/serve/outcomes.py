@@ -13,7 +13,7 @@ from ulna.control.basis import SAID
 from ulna.ground.worded import recalled
 from ulna.serve.contract import outcomes as wire
 from ulna.serve.texts import valued
-from ulna.verification.departures import SENTENCES, said_of, said_of_check
+from ulna.verification.departures import FIGURES, FORMULAS, SENTENCES, said_of, said_of_check
 from ulna.verification.result_file import FigureTable, load_verification
 
 WHYS = (*SIGNALS, BROKEN)
@@ -50,7 +50,7 @@ def _checked(found: CheckedTable) -> wire.CheckedFigure:
     return wire.CheckedFigure(
         test=found.test,
         key=found.key,
-        name=found.name,
+        name=recalled(found.name, FIGURES),
         of=list(found.of.items()),
         value=valued(found.value, found.unit, found.u, found.expanded),
         limit=None if found.limit is None else valued(found.limit, found.unit),
@@ -103,8 +103,8 @@ def verified(sha256: str, path: Path) -> wire.VerificationOutcome:
 def _figure(found: FigureTable) -> wire.TestFigure:
     return wire.TestFigure(
         key=found.key,
-        name=found.name,
-        formula=found.formula,
+        name=recalled(found.name, FIGURES),
+        formula=recalled(found.formula, FORMULAS),
         value=valued(found.value, found.unit, found.u, found.expanded),
         limit=None if found.limit is None else valued(found.limit, found.unit),
         verdict=found.verdict,

@@ -56,6 +56,41 @@ COUNTS = templates(
     "bar",
 )
 """What a profile counts."""
+FIGURES = templates(
+    "Effective diameter: deviation of the mean",
+    "Effective diameter: largest deviation",
+    "Effective diameter: standard deviation",
+    "Single-point articulation: largest deviation",
+    "Single-point articulation: 2·S",
+    "Volumetric: largest deviation",
+    "Volumetric: 2 standard deviations",
+    "Volumetric: half the range",
+    "Volumetric: 2·RMS",
+    "FARO SPAT, {axis}",
+)
+"""What figures are called, where that is more than a symbol."""
+FORMULAS = templates(
+    "D_fit - D_cal, signed; D_fit: diameter of the unconstrained least-squares sphere of the probe-centre "
+    "points of one ball, less the diameter of the tip (of a hollow: more)",
+    "R_max - R_min: largest minus smallest distance of a point from the centre of the same sphere",
+    "diameter of the smallest sphere that holds the centres of the least-squares spheres, one centre for each "
+    "orientation of the probe on one ball",
+    "L - L_cal, signed: length measured from the same direction, or centre to centre, minus the calibrated length",
+    "L - L_cal, signed: length measured from opposing directions, the diameter of the tip taken off, minus the"
+    " calibrated length",
+    "mean(D_i) - D_cal, signed; D_i: diameter of the least-squares sphere of one measurement of the ball, less"
+    " the diameter of the tip",
+    "the D_i - D_cal of the largest size, signed",
+    "√(Σ(D_i - mean(D))² / (n - 1))",
+    "max δ_i, δ_i = ‖p_i - mean(p)‖, over the touches of one seat",
+    "2 √(Σδ_i² / (n - 1)), δ_i = ‖p_i - mean(p)‖, over the n touches of one seat",
+    "the L_i - L_cal,i of the largest size, signed, over the ball bar's positions",
+    "2 √(Σ(e_i - mean(e))² / (n - 1)), e_i = L_i - L_cal,i",
+    "(max e_i - min e_i) / 2, e_i = L_i - L_cal,i",
+    "2 √(Σe_i² / n), e_i = L_i - L_cal,i: other than 2 standard deviations, it holds the mean error",
+    "(max {axis} - min {axis}) / 2 over the touches of one seat; it depends on the directions of the axes",
+)
+"""How they are computed."""
 MANNERS = templates(
     "Evaluated in the manner of ISO 10360-12:2016, from secondary sources; counts are those of the profile. No "
     "statement that the text of the standard was followed.",

@@ -68,7 +68,9 @@ class VirtualSource:
             )
         told = unit if unit != "counts" else None  # a device that sends counts does not say so
         self.arm = arm
-        self.hello = Hello(tuple(f"q{k + 1}" for k in range(arm.n)), told, f"virtual arm '{arm.name}'", rate_hz)
+        self.hello = Hello(
+            tuple(f"q{k + 1}" for k in range(arm.n)), told, worded("virtual arm '{arm}'", arm=arm.name), rate_hz
+        )
         self._turn: F64 = np.array([float(n or 0) if unit == "counts" else TURN[unit] for n in turns])
         self._counts = unit == "counts"
         self._rate_hz, self._noise_rad, self._speed, self._seconds = rate_hz, noise_rad, speed, seconds

@@ -11,7 +11,7 @@ class CheckedFigure(Said):
     test: str
     key: str
     """Its short name."""
-    name: str
+    name: Sentence
     of: list[tuple[str, str]]
     """Labels of the measurement: ("artefact", "stick"), …"""
     value: Value
@@ -61,8 +61,8 @@ class TestFigure(Said):
     """A figure of an acceptance test: its worst value."""
 
     key: str
-    name: str
-    formula: str
+    name: Sentence
+    formula: Sentence
     value: Value
     limit: Value | None
     verdict: str | None
