@@ -37,6 +37,13 @@ describe("what the server says", () => {
 		expect([tongue(unknown), tongue({ text: "plain" })]).toEqual(["en", "en"]);
 		expect(tongue({ text: "", template: "constructor" })).toBe("en");
 	});
+	it("begins with a capital where it does in English", async () => {
+		await learn("de");
+		const asks = { text: "what was touched", template: "what was touched", values: {} };
+		const asked = { text: "What was touched?", template: "{asks}?", values: { asks } };
+		expect(said(asked)).toBe("Was angetastet wurde?");
+		expect(said(asks)).toBe("was angetastet wurde");
+	});
 	it("a value is a value, whatever stands in it", async () => {
 		await learn("de");
 		const odd = { text: "", template: "Not taken: {reason}.", values: { reason: "{reason} $& {x}" } };

@@ -87,7 +87,7 @@ def test_a_check_by_another_arm_and_the_records_history(
     first = client.made({**body, "readings": client.bring(MORNINGS[0]), "date": "2026-11-02"})["check"]
     client.post("/records/add", {"files": [first], "arm": "P7"})
     second = client.made({**body, "readings": client.bring(MORNINGS[1]), "date": "2026-11-04"})["check"]
-    assert "1" in client.get(f"/checks/{second}")["figures"][0]["history"]
+    assert "1" in client.get(f"/checks/{second}")["figures"][0]["history"]["text"]
     assert client.get("/records/equipment/P7")["series"]
     wrong = {**body, "of": "no-such", "readings": first}
     assert "not registered" in client.refused(400, "POST", "/jobs", json=wrong)

@@ -25,11 +25,14 @@ export function said(sentence: Sentence): string {
 	const text = known(sentence);
 	if (text === undefined) return sentence.text;
 	const values = sentence.values ?? {};
-	return text.replace(/\{(\w+)\}/g, (whole, name: string) => {
+	const whole = text.replace(/\{(\w+)\}/g, (hole, name: string) => {
 		const value = values[name];
-		if (value === undefined) return whole;
+		if (value === undefined) return hole;
 		return typeof value === "string" ? value : said(value);
 	});
+	// what begins with a clause begins with a capital where it does in English
+	const begins = text.startsWith("{") && /^\p{Lu}/u.test(sentence.text);
+	return begins ? `${whole.charAt(0).toUpperCase()}${whole.slice(1)}` : whole;
 }
 
 /** Of text that is in English on a page in another language; undefined: it is in the page's. */

@@ -21,14 +21,14 @@ class Worded(str):
     template: str
     values: Mapping[str, str]
 
-    def __new__(cls, template: str, values: Mapping[str, str]) -> Worded:
-        """Raises KeyError where a value lacks."""
-        made = super().__new__(cls, _NAMED.sub(lambda name: values[name[1]], template))
+    def __new__(cls, template: str, values: Mapping[str, str], text: str | None = None) -> Worded:
+        """text: where it is another than template and values make. Raises KeyError where a value lacks."""
+        made = super().__new__(cls, _NAMED.sub(lambda name: values[name[1]], template) if text is None else text)
         made.template, made.values = template, values
         return made
 
-    def __reduce__(self) -> tuple[type[Worded], tuple[str, Mapping[str, str]]]:
-        return Worded, (self.template, self.values)
+    def __reduce__(self) -> tuple[type[Worded], tuple[str, Mapping[str, str], str]]:
+        return Worded, (self.template, self.values, str(self))
 
 
 def worded(template: str, **values: str | int) -> str:
@@ -40,6 +40,12 @@ def worded(template: str, **values: str | int) -> str:
 def listed(parts: Sequence[str]) -> str:
     """ "a, b, c" of words or sentences, which keep what they are made of. "" of none."""
     return _joined(parts, lambda first, rest: worded("{first}, {rest}", first=first, rest=rest))
+
+
+def capital(sentence: str) -> str:
+    """With a capital at its beginning, which stands in no template that begins with a value."""
+    text = f"{sentence[:1].upper()}{sentence[1:]}"
+    return Worded(sentence.template, sentence.values, text) if isinstance(sentence, Worded) else text
 
 
 def one_by_one(parts: Sequence[str]) -> str:

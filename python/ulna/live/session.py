@@ -77,8 +77,14 @@ class Session:
         channels = len(stream.mapping.columns)
         if channels != arm.n:
             raise UlnaInputError(
-                f"{stream.source.hello.device}: {channels} channels are mapped to joints, arm '{arm.name}' has "
-                f"{arm.n}; expected one for each. Say which they are: key 'map.channels' of a source file."
+                worded(
+                    "{device}: {channels} channels are mapped to joints, arm '{arm}' has {joints}; expected one for "
+                    "each. Say which they are: key 'map.channels' of a source file.",
+                    device=stream.source.hello.device,
+                    channels=channels,
+                    arm=arm.name,
+                    joints=arm.n,
+                )
             )
         _check_signs(arm)
         self.arm, self.spec, self.stream, self.journal = arm, spec, stream, journal

@@ -31,8 +31,12 @@ class SerialWire:
             )
         except (OSError, ValueError, serial.SerialException) as error:
             raise UlnaInputError(
-                f"serial:{path}: cannot be opened ({_said(error)}); expected a serial port. See which there are with: "
-                "ulna live ports"
+                worded(
+                    "serial:{port}: cannot be opened ({why}); expected a serial port. See which there are with: ulna "
+                    "live ports",
+                    port=path,
+                    why=_said(error),
+                )
             ) from None
 
     def receive(self) -> list[bytes]:

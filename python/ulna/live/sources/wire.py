@@ -95,14 +95,22 @@ class WireSource:
             try:
                 self._take(max(min(until - time.monotonic(), 0.1), 0.0))
             except SourceEnded as ended:
-                raise UlnaInputError(f"{ended} No reading came before. Check the device.") from None
+                raise UlnaInputError(
+                    worded("{why} No reading came before. Check the device.", why=kept(ended))
+                ) from None
             if time.monotonic() > until and self._decoder.channels is None:
                 said = self._decoder.skipped
-                heard = f"; {said.bytes} bytes came that are none" if said.bytes else ""
-                shown = next((f": {fault.text}" for fault in said.taken(end=True)), "")
+                heard = worded("; {count} bytes came that are none", count=said.bytes) if said.bytes else ""
+                shown = next((worded(": {fault}", fault=fault.text) for fault in said.taken(end=True)), ".")
                 raise UlnaInputError(
-                    f"{self._wire.device}: no reading in {wait_s:g} s{heard}{shown or '.'} Expected lines of numbers, "
-                    "or what [decode] says. See what comes with: ulna live guess"
+                    worded(
+                        "{device}: no reading in {seconds} s{heard}{shown} Expected lines of numbers, or what [decode] "
+                        "says. See what comes with: ulna live guess",
+                        device=self._wire.device,
+                        seconds=f"{wait_s:g}",
+                        heard=heard,
+                        shown=shown,
+                    )
                 )
         if len(self._decoder.channels) > MOST_CHANNELS:
             raise UlnaInputError(
