@@ -9,6 +9,7 @@ import { keep, kept } from "./kept";
 import { sound } from "./tones";
 import type { Feed, Frames } from "./widgets/picture";
 import { touchLine } from "./widgets/touching";
+import { said } from "./words/said.svelte";
 import type { WordKey } from "./words/words.svelte";
 
 export type Door = "opening" | "open" | "locked" | "sign-in" | "silent";
@@ -113,20 +114,20 @@ class Bench {
 				break;
 			case "touch":
 				sound("taken");
-				announce([touchLine(event.touch), ...event.sentences.slice(1)].join(" "));
+				announce([touchLine(event.touch), ...event.sentences.slice(1).map(said)].join(" "));
 				break;
 			case "refused":
 				sound("refused");
-				announce(event.sentence, true);
+				announce(said(event.sentence), true);
 				break;
 			case "fault":
-				announce(event.sentence, true);
+				announce(said(event.sentence), true);
 				break;
 			case "job":
 				this.jobs = { ...this.jobs, [event.job.id]: event.job };
 				break;
 			case "said":
-				announce(event.sentence);
+				announce(said(event.sentence));
 				break;
 			case "stream":
 			case "tip":

@@ -1,6 +1,7 @@
 /** Something that is asked of the server: while it lasts buttons wait, and a no is shown where it was asked. */
 import { announce } from "./announce.svelte";
 import { Refusal, SILENT } from "./api/refusal";
+import { said } from "./words/said.svelte";
 import { t } from "./words/words.svelte";
 
 export class Doing {
@@ -34,6 +35,6 @@ export class Doing {
 }
 
 export function inWords(error: unknown): string {
-	if (error instanceof Refusal) return error.status === SILENT ? t("error.silent") : error.message;
+	if (error instanceof Refusal) return error.status === SILENT ? t("error.silent") : said(error.sentence);
 	return t("error.fault", { what: error instanceof Error ? error.message : String(error) });
 }

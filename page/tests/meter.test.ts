@@ -17,7 +17,7 @@ const known = (name: string, u: number | null, drawn: number | null, unit: strin
 	determined: u !== null,
 });
 const METER: Meter = {
-	line: "",
+	line: { text: "" },
 	touches: 12,
 	determined: 27,
 	determinable: 25,

@@ -17,7 +17,7 @@ const touch = (number: number, over: Partial<Touch> = {}): Touch => ({
 	...over,
 });
 const METER: Meter = {
-	line: "",
+	line: { text: "" },
 	touches: 1,
 	determined: 1,
 	determinable: 25,
@@ -53,7 +53,7 @@ const ACTIVITY: Activity = {
 	begun: "2026-11-30T16:00:00+00:00",
 	stream: {
 		scheme: "virtual",
-		device: "virtual arm",
+		device: { text: "virtual arm" },
 		channels: ["q1"],
 		rate_hz: 500,
 		silent_s: 0,
@@ -74,14 +74,14 @@ describe("events", () => {
 		const event = (one: Touch): LiveEvent => ({
 			event: "touch",
 			touch: one,
-			sentences: ["Touch.", `Odd ${one.number}.`],
+			sentences: [{ text: "Touch." }, { text: `Odd ${one.number}.` }],
 		});
 		const found = told(event(touch(1)), event(touch(2)), event(touch(2, { suspicious: true })));
 		expect(stateOf(found).touches.map((each) => [each.number, each.suspicious])).toEqual([
 			[1, false],
 			[2, true],
 		]);
-		expect(found?.said).toEqual(["Odd 1.", "Odd 2.", "Odd 2."]);
+		expect(found?.said).toEqual(["Odd 1.", "Odd 2.", "Odd 2."].map((text) => ({ text })));
 	});
 	it("what is known is the newest", () => {
 		const found = told({ event: "known", meter: METER, next: null });
@@ -90,9 +90,9 @@ describe("events", () => {
 	it("only so many sentences stay", () => {
 		const events = Array.from(
 			{ length: SAID + 3 },
-			(_, k): LiveEvent => ({ event: "said", sentence: `${k}` }),
+			(_, k): LiveEvent => ({ event: "said", sentence: { text: `${k}` } }),
 		);
-		expect(told(...events)?.said).toEqual(["3", "4", "5", "6", "7", "8"]);
+		expect(told(...events)?.said).toEqual(["3", "4", "5", "6", "7", "8"].map((text) => ({ text })));
 	});
 	it("a hello brings the whole activity, and an end its last state", () => {
 		const other = { ...ACTIVITY, id: "y" };
@@ -100,7 +100,7 @@ describe("events", () => {
 		expect(told({ event: "ended", activity: { ...ACTIVITY, running: false } })?.running).toBe(false);
 	});
 	it("nothing happens to an activity that nobody looks at", () => {
-		expect(reduced(null, { event: "said", sentence: "x" })).toBeNull();
+		expect(reduced(null, { event: "said", sentence: { text: "x" } })).toBeNull();
 		expect(reduced(null, { event: "touch", touch: touch(1), sentences: [] })).toBeNull();
 	});
 	it("where the tip is belongs to a read-out alone", () => {

@@ -15,8 +15,11 @@ const read = (body: string) =>
 const STATE = { kind: "touch", artefact: "bar", features: ["A", "B"] } as unknown as TouchState;
 const NEXT = {
 	sentences: [
-		"Next, put it at x 120, y -45, z 310 mm, rising 20°, towards 90°:",
-		"  touch B, elbow left, probe from above",
+		{
+			text: "Next, put it at x 120, y -45, z 310 mm, rising 20°, towards 90°:",
+			values: { x: "120", y: "-45", z: "310" },
+		},
+		{ text: "  touch B, elbow left, probe from above" },
 	],
 	feature: "B",
 	here: false,

@@ -131,6 +131,18 @@ def said(answer: httpx.Response) -> Any:
     return answer.json() if answer.content else None
 
 
+def untold(document: Any) -> list[str]:
+    """Sentences of what was answered, or told, that no catalogue can know. What has no blank is a name or a symbol."""
+    if isinstance(document, list):
+        return [each for one in document for each in untold(one)]
+    if not isinstance(document, dict):
+        return []
+    if set(document) == {"text", "template", "values"}:
+        own = [document["text"]] if document["template"] is None and " " in document["text"] else []
+        return own + untold(list(document["values"].values()))
+    return untold(list(document.values()))
+
+
 def wait_for(condition: Callable[[], bool], what: str) -> None:
     end = time.monotonic() + PATIENCE_S
     while not condition():

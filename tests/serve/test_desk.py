@@ -40,7 +40,7 @@ def test_a_file_is_there_once_under_its_hash(client: Client, server: Threaded) -
 def test_what_a_file_is(client: Client, root: Path, play: dict[str, str]) -> None:
     kinds = {each["sha256"]: each for each in client.get("/files")["files"]}
     assert (kinds[play["arm"]]["kind"], kinds[play["plan"]]["kind"]) == ("arm", "plan")
-    assert "7 joints" in kinds[play["arm"]]["what"]
+    assert "7 joints" in kinds[play["arm"]]["what"]["text"]
     fossils = root / "tests" / "data" / "fossils"
     for name, kind in {"result-1.json": "result", "arm-1.toml": "arm", "study-1.toml": "study"}.items():
         found = sorted(fossils.rglob(name)) or sorted(fossils.rglob(name.replace("-1", "")))
@@ -65,7 +65,7 @@ def test_what_a_file_is(client: Client, root: Path, play: dict[str, str]) -> Non
 def test_what_cannot_be_used_says_why(client: Client, name: str, content: bytes) -> None:
     made = client.ask("POST", "/files", params={"name": name}, content=content).json()
     assert made["kind"] == "other"
-    assert made["what"]
+    assert made["what"]["text"]
     assert client.ask("GET", "/arms").status_code == 200
 
 

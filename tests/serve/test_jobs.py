@@ -91,4 +91,4 @@ def test_one_that_says_much_floods_nobody(server: Threaded, client: Client) -> N
             lambda event: event["event"] == "job" and event["job"]["id"] == job.id and event["job"]["done"] == 5000,
         )
     assert len(told) < 1000
-    assert client.waited(job.id)["said"] == ["done counting"]
+    assert client.waited(job.id)["said"] == [{"text": "done counting", "template": None, "values": {}}]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from tests.cli_runs import run
 from tests.pdf_reading import Pdf, holds
-from tests.serve.servers import Client, Threaded, apart
+from tests.serve.servers import Client, Threaded, apart, untold
 
 ROOT = Path(__file__).resolve().parents[2]
 PLATINUM = ROOT / "examples" / "platinum"
@@ -72,7 +72,10 @@ def test_a_check_and_its_history(client: Client, protocol: dict[str, object], tm
             figure["key"], figure["value"], figure["verdict"],
         )  # fmt: skip
         assert ours["centre_mm"] == figure["history"]["centre"]
-    assert [each["steps"] for each in found["advice"]] == [each["steps"] for each in theirs["advice"]]
+    assert [[step["text"] for step in each["steps"]] for each in found["advice"]] == [
+        each["steps"] for each in theirs["advice"]
+    ]
+    assert untold(found) == []
     assert client.get(f"/files/{earlier[0]}")["kind"] == "check"
 
 
@@ -84,7 +87,7 @@ def test_a_check_by_another_arm_and_the_records_history(
     first = client.made({**body, "readings": client.bring(MORNINGS[0]), "date": "2026-11-02"})["check"]
     client.post("/records/add", {"files": [first], "arm": "P7"})
     second = client.made({**body, "readings": client.bring(MORNINGS[1]), "date": "2026-11-04"})["check"]
-    assert "1" in client.get(f"/checks/{second}")["figures"][0]["history"]
+    assert "1" in client.get(f"/checks/{second}")["figures"][0]["history"]["text"]
     assert client.get("/records/equipment/P7")["series"]
     wrong = {**body, "of": "no-such", "readings": first}
     assert "not registered" in client.refused(400, "POST", "/jobs", json=wrong)

@@ -54,8 +54,8 @@ def test_equipment_and_what_became_of_it(client: Client, filled: Records) -> Non
     assert (row["name"], row["maker"], row["state"]) == ("P7", "Example Arms", "in use")
     whole = client.get("/records/equipment/P7")
     said = [(each.at, each.what, each.text) for each in reversed(filled.history("P7"))]
-    assert [(each["at"], each["what"], each["text"]) for each in whole["history"]] == said
-    assert ("knock", "fell <b>hard</b>") in {(each["what"], each["text"]) for each in whole["history"]}
+    assert [(each["at"], each["what"]["text"], each["text"]["text"]) for each in whole["history"]] == said
+    assert ("knock", "fell <b>hard</b>") in {(each["what"]["text"], each["text"]["text"]) for each in whole["history"]}
     assert [(each["figure"], each["count"]) for each in whole["series"]] == [
         (each.name, each.count) for each in filled.series("P7")
     ]
@@ -77,7 +77,7 @@ def test_figures_and_trend_as_the_command_says_them(client: Client, filled: Reco
     theirs = json.loads(done.stdout)
     assert [each["value"]["value"] for each in found["points"]] == [each["value"] for each in theirs["points"]]
     assert found["interval_days"] == theirs["until"]["days"]
-    assert theirs["until"]["reason"] in found["sentences"]
+    assert theirs["until"]["reason"] in [each["text"] for each in found["sentences"]]
     for key in ("centre", "lower", "upper", "in_control", "baseline"):
         assert found[key] == theirs["chart"][key]
     points = client.get("/records/equipment/P7/figures", figure=figure.name, state=figure.state)["points"]
@@ -85,7 +85,7 @@ def test_figures_and_trend_as_the_command_says_them(client: Client, filled: Reco
     assert "no figure" in client.refused(400, "GET", "/records/equipment/P7/trend", params={"figure": "no-such"})
     advice = client.get("/records/equipment/P7/advice", **{key: asked[key] for key in ("figure", "limit")})["advice"]
     assert [each["method"] for each in advice] == ["staircase", "NCSLI RP-1 A3", "drift to the limit"]
-    assert advice[0]["reason"] == filled.advise("P7", "staircase").reason
+    assert advice[0]["reason"]["text"] == filled.advise("P7", "staircase").reason
 
 
 def test_due_and_impact(client: Client, filled: Records) -> None:
@@ -95,7 +95,7 @@ def test_due_and_impact(client: Client, filled: Records) -> None:
     found = client.get("/records/equipment/P7/impact")
     assert found["good"].startswith("2025-02-01")
     assert found["bad"].startswith("2025-11-01")
-    assert "knock" in {each["what"] for each in found["touched"]}
+    assert "knock" in {each["what"]["text"] for each in found["touched"]}
 
 
 def test_artefacts_and_their_certificates(client: Client, filled: Records) -> None:

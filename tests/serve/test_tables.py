@@ -44,7 +44,7 @@ def test_a_workbook_as_it_stands_and_what_is_asked(client: Client, book: tuple[s
     assert all(len(row["cells"]) == len(names) for row in table["first"])
     assert table["first"][0]["cells"][names.index("Ende")] in GERMAN["ends"]
     assert table["first"][0]["at"] != table["first"][1]["at"]
-    assert any("axis" in each["why"] or "angle" in each["why"] for each in table["columns"])
+    assert any("axis" in each["why"]["text"] or "angle" in each["why"]["text"] for each in table["columns"])
 
 
 def test_a_study_as_ulna_new_writes_it(
@@ -82,6 +82,9 @@ def test_what_was_brought_is_calibrated(client: Client, kept: Kept, tmp_path: Pa
     assert client.get(f"/results/{job['made'][0]['sha256']}")["converged"]
 
 
+NOWHERE = [{"ours": "q1", "theirs": "no-such"}]
+
+
 def test_what_is_wrong_with_which_cell(client: Client, kept: Kept, tmp_path: Path) -> None:
     path = tmp_path / "out.csv"
     text(kept, path, GERMAN, "utf-8", kept.q_rad, ",", ".")
@@ -93,7 +96,7 @@ def test_what_is_wrong_with_which_cell(client: Client, kept: Kept, tmp_path: Pat
     arm = {"reach_mm": 1000.0, "parallel": ["none"]}
     found = looked(client, client.bring(path), touched=[BAR], arm=arm)
     assert [each["field"] for each in found["questions"]] == ["skip_bad"]
-    assert "Fehler" in found["questions"][0]["asks"]
+    assert "Fehler" in found["questions"][0]["asks"]["text"]
     bad = [each for column in found["tables"][0]["columns"] for each in column["bad"]]
     assert len(bad) == 1
     assert "line 11" in bad[0]
@@ -123,8 +126,8 @@ def test_what_is_no_table(client: Client, name: str, content: bytes, said: str) 
 def test_words_that_do_not_fit(client: Client, book: tuple[str, Path]) -> None:
     both = {**BAR, "diameter_mm": 3.0}
     assert "one of them" in client.refused(400, "POST", "/studies", json={"files": [book[0]], "touched": [both]})
-    wrong = looked(client, book[0], touched=[{"kind": "no-such"}])["wrong"]
+    wrong = looked(client, book[0], touched=[{"kind": "no-such"}])["wrong"]["text"]
     assert "kind of artefact" in wrong
-    wrong = looked(client, book[0], touched=[BAR], arm=ARM, columns=[{"ours": "q1", "theirs": "no-such"}])["wrong"]
+    wrong = looked(client, book[0], touched=[BAR], arm=ARM, columns=NOWHERE)["wrong"]["text"]
     assert "no-such" in wrong
     assert "/desk/" not in wrong

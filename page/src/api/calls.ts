@@ -29,7 +29,7 @@ async function got<T>(asked: Promise<Answered<Loose<T>>>): Promise<T> {
 	try {
 		answered = await asked;
 	} catch {
-		throw new Refusal(SILENT, "");
+		throw new Refusal(SILENT, { text: "" });
 	}
 	const { data, error, response } = answered;
 	if (response.status === CLOSED) gate.closed();

@@ -1,5 +1,5 @@
 /** What an event makes of what is known of an activity. Nothing is worked out: the server's newest word counts. */
-import type { Activity, LiveEvent, State, Touch, TouchState } from "./types";
+import type { Activity, LiveEvent, Sentence, State, Touch, TouchState } from "./types";
 
 /** Sentences that are kept. */
 export const SAID = 6;
@@ -38,7 +38,7 @@ export function reduced(activity: Activity | null, event: LiveEvent): Activity |
 	}
 }
 
-function said(activity: Activity, sentences: string[]): Activity {
+function said(activity: Activity, sentences: Sentence[]): Activity {
 	return { ...activity, said: [...activity.said, ...sentences].slice(-SAID) };
 }
 

@@ -14,6 +14,7 @@ export type RulesAsked = Schemas["SettingsAsked"];
 export type Proposal = Schemas["Proposal"];
 export type Proposals = Schemas["Proposals"];
 export type Value = Schemas["Value"];
+export type Sentence = Schemas["Wording"];
 export type BenchInfo = Schemas["BenchInfo"];
 export type Card = Schemas["Card"];
 export type ArmInfo = Schemas["ArmInfo"];

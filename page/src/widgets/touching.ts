@@ -1,5 +1,5 @@
 /** What is to be touched next, in the words of the page; every number is the server's. */
-import type { Next, Touch, TouchState } from "../api/types";
+import type { Next, Sentence, Touch, TouchState } from "../api/types";
 import { t, type WordKey } from "../words/words.svelte";
 import { plain } from "./values";
 
@@ -31,12 +31,11 @@ export const LIES: Record<string, WordKey> = {
 	nowhere: "lies.nowhere",
 };
 
-/** "120", "-45", "310" out of "Next, put it at x 120, y -45, z 310 mm, level, towards 90°:". */
-export function placeOf(sentences: readonly string[]): { x: string; y: string; z: string } | null {
-	for (const sentence of sentences) {
-		const found = /x (-?\d+), y (-?\d+), z (-?\d+)/.exec(sentence);
-		const [, x, y, z] = found ?? [];
-		if (x && y && z) return { x, y, z };
+/** "120", "-45", "310" of "Next, put it at x 120, y -45, z 310 mm, level, towards 90°:". */
+export function placeOf(sentences: readonly Sentence[]): { x: string; y: string; z: string } | null {
+	for (const { values } of sentences) {
+		const { x, y, z } = values ?? {};
+		if (typeof x === "string" && typeof y === "string" && typeof z === "string") return { x, y, z };
 	}
 	return null;
 }

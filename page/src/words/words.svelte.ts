@@ -1,6 +1,7 @@
 /** What the page says, in the language that somebody chose. Numbers keep the decimal point in all of them. */
 import { keep, kept } from "../kept";
 import en from "./en.json";
+import { learn } from "./said.svelte";
 
 export type WordKey = keyof typeof en;
 export type Language = "en" | "de" | "zh";
@@ -40,7 +41,8 @@ export function firstLanguage(): Language {
 
 /** Speaks it from now on. */
 export async function speak(chosen: Language, remember = true): Promise<void> {
-	catalogue = await CATALOGUES[chosen]();
+	const [words] = await Promise.all([CATALOGUES[chosen](), learn(chosen)]);
+	catalogue = words;
 	spoken = chosen;
 	document.documentElement.lang = chosen;
 	if (remember) keep("language", chosen);

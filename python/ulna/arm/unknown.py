@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from ulna.ground.worded import worded
+
 LEAST_EACH = 2.5
 """Equations for each fitted parameter, placements taken off, from which on a loss tells outliers from readings that the
 fit has not followed."""
@@ -27,20 +29,27 @@ class Unknown:
     def because(self) -> str:
         """As the end of a sentence."""
         return {
-            "freedom": "the calibration had no degrees of freedom to estimate uncertainties from",
-            "loss": f"with loss '{self.loss}' the calibration had {self.each:.1f} equations for each parameter, and of "
-            f"fewer than {LEAST_EACH:g} no loss can tell outliers from readings that the fit has not followed",
-            "earlier": "the calibration held parameters of an earlier one that gave no uncertainties",
+            "freedom": worded("the calibration had no degrees of freedom to estimate uncertainties from"),
+            "loss": worded(
+                "with loss '{loss}' the calibration had {each} equations for each parameter, and of fewer than {least} "
+                "no loss can tell outliers from readings that the fit has not followed",
+                loss=self.loss,
+                each=f"{self.each:.1f}",
+                least=f"{LEAST_EACH:g}",
+            ),
+            "earlier": worded("the calibration held parameters of an earlier one that gave no uncertainties"),
         }[self.kind]
 
     @property
     def remedy(self) -> str:
         """A sentence."""
         return {
-            "freedom": "Calibrate with more readings, or state the noise in the study.",
-            "loss": "Calibrate with more readings, fit fewer parameters (fewer extras, more held), or look at the "
-            "readings far off, leave out what is wrong, and set loss = 'none'.",
-            "earlier": "Repeat the earlier calibration with more readings, or with its noise stated.",
+            "freedom": worded("Calibrate with more readings, or state the noise in the study."),
+            "loss": worded(
+                "Calibrate with more readings, fit fewer parameters (fewer extras, more held), or look at the readings "
+                "far off, leave out what is wrong, and set loss = 'none'."
+            ),
+            "earlier": worded("Repeat the earlier calibration with more readings, or with its noise stated."),
         }[self.kind]
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ulna.ground.arrays import Progress
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import recalled, templates, worded
 from ulna.study.assembly import Assembled, assemble
 from ulna.study.study import Study
 
@@ -18,6 +19,14 @@ if TYPE_CHECKING:
 
 SEARCH_STARTS = 2000
 """From where other minima are looked for: the core's own number."""
+
+NO_FIT = templates(
+    "the readings give {equations} equations for {unknowns} unknowns ({parameters} parameters that these readings "
+    "could determine and {places} of placements): take more readings (at least {missing}), or hold parameters",
+    "there are no readings",
+    "touches so far",
+)
+"""Why there is no fit, as the core says it, and of which touches."""
 
 
 def run_fit(
@@ -61,7 +70,8 @@ def run_assembled(
             poor_above_mm=options.poor_above_mm,
         )
     except _core.UlnaError as error:
-        raise UlnaInputError(f"{study.label}: {error}") from None
+        why = recalled(str(error), NO_FIT)
+        raise UlnaInputError(worded("{of}: {why}", of=recalled(study.label, NO_FIT), why=why)) from None
 
 
 def _check_signs(study: Study, assembled: Assembled, unknown: NDArray[np.bool_]) -> None:

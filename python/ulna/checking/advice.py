@@ -4,18 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ulna.verification.kinds.registry import LENGTHS, kind_of
+from ulna.ground.worded import worded
+from ulna.verification.kinds.registry import KINDS, LENGTHS, kind_of
 
-WARM = "Let the arm warm up and turn every joint through its travel; then check again. Is its base fixed?"
-RECALIBRATE = "Recalibrate (ulna calibrate), and ask ulna compare what has moved; until then do not rely on the arm."
-SLOW = "Touching again will not help: it has changed over several checks."
-NO_OTHER = "Check against an artefact of another kind: a bar for lengths, a seat for points."
-BOTH = "Points and lengths are both out: more likely the arm, or its probe, than an artefact."
+WARM = worded("Let the arm warm up and turn every joint through its travel; then check again. Is its base fixed?")
+RECALIBRATE = worded(
+    "Recalibrate (ulna calibrate), and ask ulna compare what has moved; until then do not rely on the arm."
+)
+SLOW = worded("Touching again will not help: it has changed over several checks.")
+NO_OTHER = worded("Check against an artefact of another kind: a bar for lengths, a seat for points.")
+BOTH = worded("Points and lengths are both out: more likely the arm, or its probe, than an artefact.")
 #: whether it is lengths that are out → what it means that points are not, or the other way round
 ALONE = {
-    False: "Lengths of the check are not out: more likely the probe, or what it touches, than the arm.",
-    True: "Points of the check are not out: more likely the artefact, its supports or its temperature than the arm.",
+    False: worded("Lengths of the check are not out: more likely the probe, or what it touches, than the arm."),
+    True: worded(
+        "Points of the check are not out: more likely the artefact, its supports or its temperature than the arm."
+    ),
 }
+
+
+def steps() -> list[str]:
+    """All that may be advised."""
+    looked = [said for kind in KINDS.values() for said in (kind.again, kind.look)]
+    return [WARM, RECALIBRATE, SLOW, NO_OTHER, BOTH, *ALONE.values(), *looked]
 
 
 def advice(kind: str, slow: bool, others: Mapping[str, bool]) -> list[str]:

@@ -20,7 +20,9 @@ from ulna.checking.series import History, judged
 from ulna.formats.output import refuse_inputs, write_file
 from ulna.ground.errors import InputWarning
 from ulna.ground.shown import About, Shown, Table
+from ulna.ground.worded import worded
 from ulna.verification.decision import Verdict
+from ulna.verification.departures import OF_TEST
 from ulna.verification.verify import Verification, evaluated
 
 Paths = Iterable[str | os.PathLike[str]]
@@ -68,7 +70,10 @@ class Check(Shown):
     def departures(self) -> list[str]:
         """In words: where what was measured is not what the protocol counts."""
         (state,) = self.verification.states
-        return [*(f"{test.name}: {text}" for test in state.tests for text in test.departures), *state.departures]
+        return [
+            *(worded(OF_TEST, test=test.name, departure=text) for test in state.tests for text in test.departures),
+            *state.departures,
+        ]
 
     def about(self) -> About:
         """Each figure in each place, with its limit and what its history says."""

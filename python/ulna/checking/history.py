@@ -14,11 +14,21 @@ from ulna.checking.result_file import CheckedTable, CheckFile, load_check
 from ulna.formats.toml import read_json
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import templates, worded
 from ulna.verification.outcome import Labels
 from ulna.verification.touches import Touches
 
 WHAT = "earlier checks (JSON), or a folder of them"
 DAY_S = 86400.0
+
+NOT_USED = "history: {count} checks are {why}: not used."
+ONE_NOT_USED = "history: 1 check is {why}: not used."
+NO_CHECK = "history: {path}: there is no check in it."
+SAME = "of the same readings as another one"
+LATER = "not earlier than this one"
+BEFORE = "of the arm before it was calibrated as it is now"
+REMARKS = templates(NOT_USED, ONE_NOT_USED, NO_CHECK, SAME, LATER, BEFORE)
+"""Templates of what is remarked on earlier checks."""
 
 
 @dataclass(frozen=True)
@@ -63,18 +73,19 @@ def load_history(
     for each in sorted(found, key=lambda each: each.time):
         why = None
         if any(digest in seen for digest in each.readings):
-            why = "of the same readings as another one"
+            why = worded(SAME)
         elif each.time >= time:
-            why = "not earlier than this one"
+            why = worded(LATER)
         elif any(digest != touches.arm_sha256 for digest in each.arm):
-            why = "of the arm before it was calibrated as it is now"
+            why = worded(BEFORE)
         seen.update(each.readings)
         if why is None:
             kept.append(each)
         else:
             left[why] = left.get(why, 0) + 1
     remarks += [
-        f"history: {count} check{'s are' if count > 1 else ' is'} {why}: not used." for why, count in left.items()
+        worded(NOT_USED, count=count, why=why) if count > 1 else worded(ONE_NOT_USED, why=why)
+        for why, count in left.items()
     ]
     return kept
 
@@ -86,7 +97,7 @@ def _in(path: Path, remarks: list[str]) -> list[Earlier]:
     inside = sorted(each for each in path.glob("*.json") if each.is_file())
     checks = [each for each in inside if str(read_json(each, WHAT)[0].get("format")).startswith("ulna-check/")]
     if not checks:
-        remarks.append(f"history: {path}: there is no check in it.")
+        remarks.append(worded(NO_CHECK, path=str(path)))
     return [one for each in checks for one in _in(each, remarks)]
 
 

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 
 from ulna.checking.advice import advice
 from ulna.checking.series import History
+from ulna.ground.worded import worded
 from ulna.verification.figures.figure import Definition
 from ulna.verification.outcome import Judged
+
+BROKEN = worded("its limit is broken")
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Checked:
     @property
     def whys(self) -> list[str]:
         """What is out, in words; [] where nothing is."""
-        limit = ["its limit is broken"] if self.judged.decided.verdict == "fail" else []
+        limit = [BROKEN] if self.judged.decided.verdict == "fail" else []
         return limit + ([] if self.history is None else [signal.words for signal in self.history.signals])
 
     @property

@@ -10,7 +10,9 @@ from ulna.checking.history import Past
 from ulna.checking.tables import ControlTable
 from ulna.control.basis import Basis
 from ulna.control.chart import Chart, chart
+from ulna.control.runs import RULES
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 
 
 @dataclass(frozen=True)
@@ -93,8 +95,10 @@ def _to_chart(values_mm: F64, signed: bool) -> F64:
     return values_mm if signed else np.asarray(np.abs(values_mm) ** (2.0 / 3.0))
 
 
-_BEYOND = Signal("limits", "beyond the limits of its history", slow=False)
-_DRIFTED = Signal("average", "the average of the last checks has left the mean", slow=True)
+_BEYOND = Signal("limits", worded("beyond the limits of its history"), slow=False)
+_DRIFTED = Signal("average", worded("the average of the last checks has left the mean"), slow=True)
+SIGNALS = (_BEYOND.words, _DRIFTED.words, *(rule.words for rule in RULES.values()))
+"""All that may be out of control, in words."""
 
 
 def _rows(found: Chart, signed: bool) -> list[Signal]:

@@ -11,6 +11,15 @@ import numpy as np
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.quantiles import fisher_beyond, normal, student
+from ulna.ground.worded import templates, worded
+
+OVER = " over {days} days"
+TOO_FEW = "too few: {count}, and at least {fewest} are needed"
+TOO_FEW_OVER = "too few: {count}{over}, and at least {fewest} are needed"
+OF = "of {count}"
+OF_OVER = "of {count}{over}"
+SAID = templates(OVER, TOO_FEW_OVER, TOO_FEW, OF_OVER, OF)
+"""Templates of what a basis says, the narrower first."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +42,12 @@ class Basis:
     @property
     def said(self) -> str:
         """In words."""
-        over = "" if self.span_days is None else f" over {self.span_days:.0f} days"
+        over = "" if self.span_days is None else worded(OVER, days=f"{self.span_days:.0f}")
         if self.too_few:
-            return f"too few: {self.n}{over}, and at least {self.fewest} are needed"
-        return f"of {self.n}{over}"
+            if not over:
+                return worded(TOO_FEW, count=self.n, fewest=self.fewest)
+            return worded(TOO_FEW_OVER, count=self.n, over=over, fewest=self.fewest)
+        return worded(OF_OVER, count=self.n, over=over) if over else worded(OF, count=self.n)
 
 
 def basis(method: str, n: int, fewest: int, days: F64 | None = None) -> Basis:

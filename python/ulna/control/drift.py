@@ -19,6 +19,7 @@ from ulna.control.basis import Basis, as_many, basis, figures, two_sided
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.quantiles import chi_squared_beyond, fisher_beyond
+from ulna.ground.worded import in_a_row, worded
 
 FEWEST = 4
 """Figures: of three, one degree of freedom is left, and t is 12.7."""
@@ -110,13 +111,23 @@ class Drift:
     def said(self) -> str:
         """In words."""
         if self.line is None or self.p_value is None:
-            return f"{self.basis.said}; nothing is said of drift."
-        slope = f"{365.25 * self.line.slope:.3g} ± {365.25 * self.line.u_slope:.2g} a year"
-        found = "a slope" if self.drifts else "no slope that chance does not make"
-        scatter = ""
-        if self.explained is False:
-            scatter = f" The stated u does not explain the scatter: it is multiplied by {self.birge:.2f} (Birge)."
-        return f"{found}: {slope} (p = {self.p_value:.2g}, {self.basis.said}).{scatter}"
+            return worded("{basis}; nothing is said of drift.", basis=self.basis.said)
+        found = worded("a slope") if self.drifts else worded("no slope that chance does not make")
+        said = worded(
+            "{found}: {slope} ± {u} a year (p = {p}, {basis}).",
+            found=found,
+            slope=f"{365.25 * self.line.slope:.3g}",
+            u=f"{365.25 * self.line.u_slope:.2g}",
+            p=f"{self.p_value:.2g}",
+            basis=self.basis.said,
+        )
+        if self.explained is not False:
+            return said
+        scatter = worded(
+            "The stated u does not explain the scatter: it is multiplied by {factor} (Birge).",
+            factor=f"{self.birge:.2f}",
+        )
+        return in_a_row([said, scatter])
 
 
 def drift(

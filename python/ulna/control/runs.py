@@ -15,6 +15,7 @@ import numpy as np
 from ulna.control.basis import Basis, basis, figures
 from ulna.ground.arrays import F64, Bool
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 
 
 @dataclass(frozen=True)
@@ -49,14 +50,21 @@ def _alternating(z: F64) -> Bool:
 RULES = {
     rule.name: rule
     for rule in (
-        Rule("beyond-3s", "one beyond 3 s", 1, _sides(1, 3.0)),
-        Rule("two-of-three", "two of three beyond 2 s, on one side", 3, _sides(2, 2.0)),
-        Rule("four-of-five", "four of five beyond 1 s, on one side", 5, _sides(4, 1.0)),
-        Rule("eight-on-one-side", "eight in a row on one side of the mean", 8, _sides(8, 0.0)),
-        Rule("six-rising", "six in a row steadily rising or falling", 6, _rising, lambda z: z[-1] > z[0]),
-        Rule("fourteen-alternating", "fourteen in a row by turns up and down", 14, _alternating),
-        Rule("fifteen-near", "fifteen in a row within 1 s", 15, lambda z: np.asarray((np.abs(z) < 1.0).all(axis=1))),
-        Rule("eight-apart", "eight in a row beyond 1 s", 8, lambda z: np.asarray((np.abs(z) > 1.0).all(axis=1))),
+        Rule("beyond-3s", worded("one beyond 3 s"), 1, _sides(1, 3.0)),
+        Rule("two-of-three", worded("two of three beyond 2 s, on one side"), 3, _sides(2, 2.0)),
+        Rule("four-of-five", worded("four of five beyond 1 s, on one side"), 5, _sides(4, 1.0)),
+        Rule("eight-on-one-side", worded("eight in a row on one side of the mean"), 8, _sides(8, 0.0)),
+        Rule("six-rising", worded("six in a row steadily rising or falling"), 6, _rising, lambda z: z[-1] > z[0]),
+        Rule("fourteen-alternating", worded("fourteen in a row by turns up and down"), 14, _alternating),
+        Rule(
+            "fifteen-near",
+            worded("fifteen in a row within 1 s"),
+            15,
+            lambda z: np.asarray((np.abs(z) < 1.0).all(axis=1)),
+        ),
+        Rule(
+            "eight-apart", worded("eight in a row beyond 1 s"), 8, lambda z: np.asarray((np.abs(z) > 1.0).all(axis=1))
+        ),
     )
 }
 USUAL = ("beyond-3s", "two-of-three", "four-of-five", "eight-on-one-side", "six-rising")

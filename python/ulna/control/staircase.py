@@ -13,6 +13,7 @@ from typing import Literal
 
 from ulna.control.basis import Basis
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 Step = Literal["longer", "kept", "shorter"]
 
@@ -57,23 +58,37 @@ def staircase(
             raise UlnaInputError(f"staircase: '{name}': got limit {limit:g}; expected one above 0. Correct it.")
     rests_on = Basis("staircase", len(found), 1, interval_days)
     if rests_on.too_few:
-        return Staircase(rests_on, None, None, {}, "no figure was found, so that nothing is said.")
+        return Staircase(rests_on, None, None, {}, worded("no figure was found, so that nothing is said."))
     shares = {name: abs(value) / limit for name, (value, limit) in found.items()}
     worst = max(shares, key=lambda name: shares[name])
     step, factor, why = _step(shares[worst], well_inside, longer, shorter)
     new = min(max(factor * interval_days, least), most)
-    held = "" if new == factor * interval_days else f", held to the bounds {least:g} to {most:g} days"
-    reason = f"'{worst}' was found at {100.0 * shares[worst]:.0f} % of its limit after {interval_days:g} days: {why}"
-    return Staircase(rests_on, step, new, shares, f"{reason}; next {new:g} days{held}.")
+    reason = worded(
+        "'{figure}' was found at {share} % of its limit after {days} days: {why}; next {new} days{held}.",
+        figure=worst,
+        share=f"{100.0 * shares[worst]:.0f}",
+        days=f"{interval_days:g}",
+        why=why,
+        new=f"{new:g}",
+        held=""
+        if new == factor * interval_days
+        else worded(", held to the bounds {least} to {most} days", least=f"{least:g}", most=f"{most:g}"),
+    )
+    return Staircase(rests_on, step, new, shares, reason)
 
 
 def _step(share: float, well_inside: float, longer: float, shorter: float) -> tuple[Step, float, str]:
     if share > 1.0:
-        return "shorter", shorter, f"outside, so the interval is multiplied by {shorter:g}"
+        return "shorter", shorter, worded("outside, so the interval is multiplied by {factor}", factor=f"{shorter:g}")
     if share <= well_inside:
         return (
             "longer",
             longer,
-            f"all within {100.0 * well_inside:g} %, so the interval is multiplied by {longer:g}",
+            worded(
+                "all within {share} %, so the interval is multiplied by {factor}",
+                share=f"{100.0 * well_inside:g}",
+                factor=f"{longer:g}",
+            ),
         )
-    return "kept", 1.0, f"inside, but not within {100.0 * well_inside:g} %, so the interval is kept"
+    kept = worded("inside, but not within {share} %, so the interval is kept", share=f"{100.0 * well_inside:g}")
+    return "kept", 1.0, kept

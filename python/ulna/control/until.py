@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ulna.control.basis import Basis
 from ulna.control.drift import Drift, Line
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 
 @dataclass(frozen=True)
@@ -43,23 +44,37 @@ def until(
             "between; expected a guard band smaller than that. Correct them."
         )
     if found.line is None:
-        return Until(found.basis, low, high, None, None, f"{found.basis.said}; no interval is advised.")
+        return Until(
+            found.basis, low, high, None, None, worded("{basis}; no interval is advised.", basis=found.basis.said)
+        )
     line = found.line
     first = line.last_days
     low_now, high_now = found.band(first) or (-math.inf, math.inf)
     if low_now < low or high_now > high:
-        return Until(found.basis, low, high, 0.0, 0.0, "the prediction is beyond the limit on the last day already.")
+        why = worded("the prediction is beyond the limit on the last day already.")
+        return Until(found.basis, low, high, 0.0, 0.0, why)
     over = _meets(found, line, line.slope, high - line.middle)
     under = _meets(found, line, -line.slope, line.middle - low)
     days = min(over, under) - first
     most = found.basis.span_days if longest_days is None else longest_days
     assert most is not None
     if days <= most:
-        which = "upper" if over <= under else "lower"
-        why = f"the {found.confidence:.0%} prediction meets the {which} limit, less its guard band, in {days:.0f} days."
+        said = {"sure": f"{found.confidence:.0%}", "days": f"{days:.0f}"}
+        why = (
+            worded("the {sure} prediction meets the upper limit, less its guard band, in {days} days.", **said)
+            if over <= under
+            else worded("the {sure} prediction meets the lower limit, less its guard band, in {days} days.", **said)
+        )
         return Until(found.basis, low, high, days, days, why)
-    beyond = f"after {days:.0f} days" if math.isfinite(days) else "never"
-    why = f"the prediction meets the limit {beyond}; no more than {most:.0f} days are advised."
+    longest = f"{most:.0f}"
+    if math.isfinite(days):
+        why = worded(
+            "the prediction meets the limit after {days} days; no more than {most} days are advised.",
+            days=f"{days:.0f}",
+            most=longest,
+        )
+    else:
+        why = worded("the prediction meets the limit never; no more than {most} days are advised.", most=longest)
     return Until(found.basis, low, high, days if math.isfinite(days) else None, most, why)
 
 

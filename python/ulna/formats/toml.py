@@ -13,6 +13,7 @@ from typing import Any
 from ulna.formats.names import check_path
 from ulna.formats.spelling import MOST
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 
 #: no hand-written file comes near it; a table, or a device that never ends, named by mistake does
 MOST_BYTES = 8 << 20
@@ -185,17 +186,41 @@ def check_format(document: dict[str, Any], path: Path, kind: str, newest: int = 
     """`format` must be `"{kind}/N"` with 1 ≤ N ≤ newest. Raises UlnaInputError."""
     expected = f'format = "{kind}/{newest}"'
     if "format" not in document:
-        raise UlnaInputError(f"{path}: key 'format' is missing; expected {expected} as the first line. Add it.")
+        raise UlnaInputError(
+            worded(
+                "{file}: key 'format' is missing; expected {expected} as the first line. Add it.",
+                file=str(path),
+                expected=expected,
+            )
+        )
     value = document["format"]
     match = re.fullmatch(r"(ulna-[a-z-]+)/([1-9][0-9]{0,8})", value) if isinstance(value, str) else None
     if match is None:
-        raise UlnaInputError(f"{path}: key 'format': got {value!r}, an unknown format; expected {expected}.")
+        raise UlnaInputError(
+            worded(
+                "{file}: key 'format': got {got}, an unknown format; expected {expected}.",
+                file=str(path),
+                got=repr(value),
+                expected=expected,
+            )
+        )
     if match[1] != kind:
         raise UlnaInputError(
-            f"{path}: key 'format': got '{value}', another kind of file; expected {expected}. Name the right file."
+            worded(
+                "{file}: key 'format': got '{got}', another kind of file; expected {expected}. Name the right file.",
+                file=str(path),
+                got=value,
+                expected=expected,
+            )
         )
     if int(match[2]) > newest:
         raise UlnaInputError(
-            f"{path}: key 'format': version {match[2]} of {kind} is not known to this Ulna; expected {expected} or "
-            "older. Update Ulna."
+            worded(
+                "{file}: key 'format': version {version} of {kind} is not known to this Ulna; expected {expected} or "
+                "older. Update Ulna.",
+                file=str(path),
+                version=match[2],
+                kind=kind,
+                expected=expected,
+            )
         )

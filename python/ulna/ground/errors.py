@@ -54,7 +54,8 @@ def for_people(message: str) -> str:
 
     Lines are those of a list ("- …"), which is the one thing that messages have lines for.
     """
-    return "\n".join(map(_line, re.split(r"\n(?=- )", message)))
+    said = "\n".join(map(_line, re.split(r"\n(?=- )", message)))
+    return message if said == message else said  # a worded one stays one
 
 
 def _line(line: str) -> str:

@@ -20,6 +20,7 @@ from ulna.calibration.calibrate import calibrate
 from ulna.calibration.result import Result
 from ulna.formats.output import output_folder
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.journal import EVENT, TOUCH, WITHDRAWAL, Journal, Reading
 from ulna.live.running import RunningFit
 from ulna.live.samples import Hello
@@ -130,8 +131,13 @@ def _telling(group: Readings, folder: Path, left_out: list[str]) -> Readings:
             numbers = ", ".join(group.select(own).id)  # type: ignore[arg-type]
             place = group.select(own).placement[0]
             left_out.append(
-                f"Place {place} of {group.artefact.name}: not all was touched there that makes a reading; the study "
-                f"does without touch {numbers}."
+                worded(
+                    "Place {place} of {artefact}: not all was touched there that makes a reading; the study does "
+                    "without touch {numbers}.",
+                    place=str(place),
+                    artefact=group.artefact.name,
+                    numbers=numbers,
+                )
             )
     return group.select(keep)
 

@@ -15,12 +15,13 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
-from ulna.arm.conditions import PAYLOAD, TEMPERATURE
+from ulna.arm.conditions import PAYLOAD, TEMPERATURE, Condition
 from ulna.arm.file import result_file
 from ulna.arm.given import ArmLike, StandsForArm, arm_and_noise
 from ulna.arm.reading_noise import ReadingNoise
 from ulna.ground.arrays import F64, I64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.uncertainties.assess import Value, assess, not_determined
 from ulna.uncertainties.first_order import gradient_of
 from ulna.uncertainties.knowledge import known_of_result
@@ -31,7 +32,14 @@ P = math.erf(math.sqrt(2.0))
 """Coverage probability of ± 2 u of a normal distribution: k = 2, and Student's t where the calibration estimated the
 noise from its own residuals."""
 POINT, LENGTH = "point", "length"
-WITHOUT = "no uncertainty is known of this arm: give the result of its calibration"
+WITHOUT = worded("no uncertainty is known of this arm: give the result of its calibration")
+
+
+VAIN: dict[Condition, str] = {
+    TEMPERATURE: worded("The temperature is not used: of this arm its links do not grow with temperature."),
+    PAYLOAD: worded("The payload is not used: of this arm its joints do not give way to what they carry."),
+}
+"""What is said where a condition is given on which the tip does not depend."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +99,8 @@ class Calibrated:
         self.without: str | None = WITHOUT if known is None else None
         """Why nothing has an uncertainty; None where it has."""
         if unknown is not None:
-            self.without = f"no uncertainty is known of this arm: {unknown.because}. {unknown.remedy}"
+            why, remedy = unknown.because, unknown.remedy
+            self.without = worded("no uncertainty is known of this arm: {why}. {remedy}", why=why, remedy=remedy)
         self.remarks = _remarks(self.arm, temperature_c, payload, self.without is None)
         """What is to be known of conditions that were said, in sentences."""
 
@@ -155,7 +164,7 @@ class Calibrated:
             gradient_of(task, tips_mm)  # refuses touches that hardly say it
             values = task.values(self.arm, tips_mm[None])[0].tolist()
         except UlnaInputError as error:
-            return [Figure(each, unit, None, None, None, str(error)) for each, unit in measurand.units.items()]
+            return [Figure(each, unit, None, None, None, kept(error)) for each, unit in measurand.units.items()]
         return [
             Figure(each, unit, value, None, None)
             for (each, unit), value in zip(measurand.units.items(), values, strict=True)
@@ -175,18 +184,26 @@ def _check_said(arm: Arm, said: dict[str, Any]) -> None:
 
 def _remarks(arm: Arm, temperature_c: float | None, payload: str | None, with_u: bool) -> list[str]:
     given = {TEMPERATURE: temperature_c, PAYLOAD: payload}
-    found = [
-        f"The {condition.name} is not used: of this arm {condition.vain}."
-        for condition, said in given.items()
-        if said is not None and condition not in arm.needs
-    ]
+    found = [VAIN[condition] for condition, said in given.items() if said is not None and condition not in arm.needs]
     if TEMPERATURE in arm.needs and temperature_c is not None:
         if TEMPERATURE.doubtful(np.array([temperature_c])):
-            found.append(f"The temperature is {temperature_c:g}. {TEMPERATURE.doubt}")
+            found.append(
+                worded(
+                    "The temperature is {celsius}. Are they in °F? They are taken as °C; write them in °C.",
+                    celsius=f"{temperature_c:g}",
+                )
+            )
         if with_u:
-            found.append(f"The arm counts as {temperature_c:g} °C warm; what that may be off is not in U.")
+            found.append(
+                worded(
+                    "The arm counts as {celsius} °C warm; what that may be off is not in U.",
+                    celsius=f"{temperature_c:g}",
+                )
+            )
     elif with_u:
-        found.append("How warm the arm is changes nothing: its model has no temperature, and U has nothing of it.")
+        found.append(
+            worded("How warm the arm is changes nothing: its model has no temperature, and U has nothing of it.")
+        )
     return found
 
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
+from ulna.ground.worded import worded
 from ulna.live.faults import Fault
 
 WHOLE = 3
@@ -71,4 +72,7 @@ class Floods:
         if run.more == 1:
             return [last]
         seconds = max(last.t_host_s - run.since_s, 0.1)
-        return [replace(last, text=f"{run.more} more in {seconds:.1f} s, the last: {last.text}", more=run.more)]
+        said = worded(
+            "{count} more in {time} s, the last: {last}", count=run.more, time=f"{seconds:.1f}", last=last.text
+        )
+        return [replace(last, text=said, more=run.more)]

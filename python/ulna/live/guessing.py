@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.decode.fields import SECONDS
 
 TURNS = (1024, 2000, 2048, 2400, 4000, 4096, 8192, 10000, 16384, 20000, 32768, 65536, 131072, 262144, 1048576)
 """Counts per turn of encoders that are sold."""
-SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs", " ": "blanks"}
+SEPARATORS = {",": worded("commas"), ";": worded("semicolons"), "\t": worded("tabs"), " ": worded("blanks")}
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _SHARE = 0.8
 """Of the lines that must be of one kind."""
@@ -62,10 +63,12 @@ def guess(pieces: Sequence[tuple[float, bytes]], messages: bool) -> Proposal:
     """From pieces of bytes with the times at which they came, s; messages: whether each is one of its own."""
     lines = _lines(pieces, messages)
     if not lines:
-        return Proposal("nothing", ["Nothing came that ends a line. Is it sending? Is the speed (baud) right?"])
+        return Proposal("nothing", [worded("Nothing came that ends a line. Is it sending? Is the speed (baud) right?")])
     texts = [(t, text) for t, line in lines if (text := _text(line)) is not None]
     if len(texts) < _SHARE * len(lines):
-        said = "Most of it is no text: packets, or another speed (baud). For packets see the maker's description."
+        said = worded(
+            "Most of it is no text: packets, or another speed (baud). For packets see the maker's description."
+        )
         return Proposal("binary", [said])
     documents = [(t, document) for t, text in texts if isinstance(document := _json(text), dict)]
     if len(documents) >= _SHARE * len(texts):
@@ -114,14 +117,20 @@ def _of_fields(texts: list[tuple[float, str]]) -> Proposal:
     rows = [(t, cells[1:] if prefix else cells) for t, cells in split if prefix is None or cells[0] == prefix]
     rows = [(t, cells) for t, cells in rows if cells and all(_NUMBER.fullmatch(cell) for cell in cells)]
     if not rows:
-        return Proposal("nothing", ["Lines of text, but none of numbers alone.", f"Such as: {texts[-1][1][:60]}"])
+        some = worded("Such as: {line}", line=texts[-1][1][:60])
+        return Proposal("nothing", [worded("Lines of text, but none of numbers alone."), some])
     width = Counter(len(cells) for _, cells in rows).most_common(1)[0][0]
     rows = [(t, cells) for t, cells in rows if len(cells) == width]
-    reasons = [f"Lines of {width} numbers{f', with {SEPARATORS[separator]} between' if width > 1 else ''}."]
+    if width > 1:
+        between = SEPARATORS[separator]
+        reasons = [worded("Lines of {count} numbers, with {separator} between.", count=width, separator=between)]
+    else:
+        reasons = [worded("Lines of 1 numbers.")]
     if prefix:
-        reasons.append(f"They begin with '{prefix}'.")
+        reasons.append(worded("They begin with '{prefix}'.", prefix=prefix))
     if len(rows) < len(texts):
-        reasons.append(f"{len(texts) - len(rows)} of {len(texts)} lines are something else.")
+        others = len(texts) - len(rows)
+        reasons.append(worded("{count} of {all} lines are something else.", count=others, all=len(texts)))
     values = np.array([[float(cell) for cell in cells] for _, cells in rows])
     fields = [Field(f"c{k + 1}", values[:, k]) for k in range(width)]
     decode: dict[str, Any] = {"kind": "fields"}
@@ -144,24 +153,24 @@ def _of_json(documents: list[tuple[float, dict[str, Any]]]) -> Proposal:
     lists = {path: value for path, value in leaves.items() if isinstance(value, list) and value}
     numbers = {path: value for path, value in lists.items() if all(_is_number(each) for each in value)}
     names = {path: value for path, value in lists.items() if all(isinstance(each, str) for each in value)}
-    reasons = ["JSON objects."]
+    reasons = [worded("JSON objects.")]
     decode: dict[str, Any] = {"kind": "json"}
     if numbers:
         path = max(numbers, key=lambda each: len(numbers[each]))
         decode["values"] = [path]
         joints = next((each for each, value in names.items() if len(value) == len(numbers[path])), None)
-        reasons.append(f"'{path}' is a list of {len(numbers[path])} numbers.")
+        reasons.append(worded("'{path}' is a list of {count} numbers.", path=path, count=len(numbers[path])))
         if joints is not None:
             decode["joints"] = joints
-            reasons.append(f"'{joints}' is as long and names them.")
+            reasons.append(worded("'{path}' is as long and names them.", path=joints))
         labels = [str(each) for each in names[joints]] if joints else [f"c{k + 1}" for k in range(len(numbers[path]))]
         columns = [(t, found) for t, document in documents if len(found := _at(document, path)) == len(labels)]
     else:
         single = [path for path, value in leaves.items() if _is_number(value)]
         if not single:
-            return Proposal("nothing", ["JSON objects, but no number in them."])
+            return Proposal("nothing", [worded("JSON objects, but no number in them.")])
         decode["values"] = labels = single
-        reasons.append(f"Numbers at {', '.join(single)}.")
+        reasons.append(worded("Numbers at {paths}.", paths=", ".join(single)))
         columns = [(t, [_at(document, path) for path in single]) for t, document in documents]
     columns = [(t, row) for t, row in columns if all(_is_number(each) for each in row)]
     values = np.array([row for _, row in columns], dtype=float).reshape(len(columns), len(labels))
@@ -225,22 +234,25 @@ def role_of(values: F64, t_host_s: F64) -> tuple[str, str]:
         rate = float(values[-1] - values[0]) / took_s
         for unit, seconds in SECONDS.items():
             if abs(rate * seconds - 1.0) < 0.1:
-                return "clock", f"{unit} : it grows by {rate:.4g} a second, as a clock in {unit} does"
+                said = worded(
+                    "{unit} : it grows by {rate} a second, as a clock in {unit} does", unit=unit, rate=f"{rate:.4g}"
+                )
+                return "clock", said
         if len(set(steps.tolist())) == 1 and steps[0] == 1.0:
-            return "counter", "it grows by 1 with every line"
+            return "counter", worded("it grows by 1 with every line")
     if len(values) > 1 and not steps.any():
-        return (
-            ("channel", "it did not move") if abs(values[0]) > 1.0 else ("channel", "it did not move: turn it to see")
-        )
+        if abs(values[0]) > 1.0:
+            return "channel", worded("it did not move")
+        return "channel", worded("it did not move: turn it to see")
     if set(np.unique(values).tolist()) <= {0.0, 1.0}:
-        return "button", "it is 0 or 1"
-    return "channel", f"it moved by {np.ptp(values):.4g}"
+        return "button", worded("it is 0 or 1")
+    return "channel", worded("it moved by {much}", much=f"{np.ptp(values):.4g}")
 
 
 def _unit(channels: list[F64]) -> tuple[str | None, str, float | None]:
     """deg, rad or counts of the channels together, why, and counts per turn."""
     if not channels:
-        return None, "No channel of angles was found.", None
+        return None, worded("No channel of angles was found."), None
     every = np.concatenate(channels)
     return unit_of(bool((every == np.round(every)).all()), float(np.abs(every).max()))
 
@@ -249,22 +261,29 @@ def unit_of(whole: bool, size: float) -> tuple[str | None, str, float | None]:
     """deg, rad or counts of numbers up to a size, why, and counts per turn; whole: whether all are whole numbers."""
     if whole:
         if size <= 1.0:
-            return None, "All numbers are 0 or 1: turn the arm to see what they are.", None
+            return None, worded("All numbers are 0 or 1: turn the arm to see what they are."), None
         turn = next((float(each) for each in TURNS if size < each), None)
         if turn is None:
-            return "counts", f"Whole numbers up to {size:.0f}: counts; say counts_per_turn yourself.", None
+            said = worded("Whole numbers up to {size}: counts; say counts_per_turn yourself.", size=f"{size:.0f}")
+            return "counts", said, None
         return (
             "counts",
-            f"Whole numbers up to {size:.0f}: counts, perhaps of {turn:.0f} a turn: look it up, or turn one joint "
-            f"once.",
+            worded(
+                "Whole numbers up to {size}: counts, perhaps of {turn} a turn: look it up, or turn one joint once.",
+                size=f"{size:.0f}",
+                turn=f"{turn:.0f}",
+            ),
             turn,
         )
     if size <= 2 * math.pi + 0.1:
         return (
             "rad",
-            f"Decimals up to {size:.4g}, within a turn in rad (6.28): rad, or small angles in deg. Turn to see.",
+            worded(
+                "Decimals up to {size}, within a turn in rad (6.28): rad, or small angles in deg. Turn to see.",
+                size=f"{size:.4g}",
+            ),
             None,
         )
     if size <= 720.0:
-        return "deg", f"Decimals up to {size:.4g}, more than a turn in rad: deg.", None
-    return None, f"Decimals up to {size:.4g}: no angles in deg or rad.", None
+        return "deg", worded("Decimals up to {size}, more than a turn in rad: deg.", size=f"{size:.4g}"), None
+    return None, worded("Decimals up to {size}: no angles in deg or rad.", size=f"{size:.4g}"), None

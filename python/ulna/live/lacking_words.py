@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from ulna.arm.causes import said_of
 from ulna.arm.directions import sentence, steps, worth_naming
+from ulna.ground.worded import worded
 from ulna.live.lacking import Direction, Lacking
 
 LINES = 6
 """On a screen that must not jump."""
 NAMED = 2
 """Parameters that are named of those that take part."""
-WORDS = {"theta0": "zero", "alpha": "twist", "a": "length", "d": "offset", "beta": "tilt"}
-"""Of joints: as docs/concepts/model.md calls them."""
+OF_JOINT: dict[str, Callable[[str], str]] = {
+    "theta0": lambda joint: worded("zero of joint {joint}", joint=joint),
+    "alpha": lambda joint: worded("twist of joint {joint}", joint=joint),
+    "a": lambda joint: worded("length of joint {joint}", joint=joint),
+    "d": lambda joint: worded("offset of joint {joint}", joint=joint),
+    "beta": lambda joint: worded("tilt of joint {joint}", joint=joint),
+}
+"""Parameters as docs/concepts/model.md calls them."""
 
 
 def lacking_lines(found: Lacking, columns: int = 80, most: int = LINES) -> list[str]:
@@ -43,17 +51,19 @@ def named_of(directions: Sequence[Direction]) -> str:
             largest[name] = max(largest.get(name, 0.0), size / whole)
     ordered = sorted(largest, key=lambda name: -largest[name])
     more = len(ordered) - NAMED
-    named = " with ".join(map(in_words, ordered[:NAMED]))
-    return named + (f" and {more} more" if more > 0 else "")
+    named, *second = map(in_words, ordered[:NAMED])
+    for other in second:
+        named = worded("{one} with {other}", one=named, other=other)
+    return worded("{some} and {count} more", some=named, count=more) if more > 0 else named
 
 
 def in_words(parameter: str) -> str:
     """ "zero of joint 6"; what has no word keeps its name."""
     what, _, rest = parameter.partition(".")
     of, _, key = rest.rpartition(".")
-    if what == "joint" and key in WORDS:
-        return f"{WORDS[key]} of joint {of}"
-    return f"{key} of probe {of}" if what == "probe" else parameter
+    if what == "joint" and key in OF_JOINT:
+        return OF_JOINT[key](of)
+    return worded("{key} of probe {probe}", key=key, probe=of) if what == "probe" else parameter
 
 
 def _sentences(found: Lacking) -> Iterator[str]:
@@ -75,4 +85,4 @@ def together(directions: Sequence[Direction]) -> Iterator[tuple[str, str, list[D
     for direction in directions:
         groups.setdefault((str(direction["because"]).rstrip("."), str(direction["remedy"])), []).append(direction)
     for (because, remedy), own in groups.items():
-        yield because, remedy, own
+        yield said_of(because), said_of(remedy), own

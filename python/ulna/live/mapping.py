@@ -10,6 +10,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 from ulna.live.faults import WRAP, Fault
 from ulna.live.samples import Hello, Samples
 from ulna.live.tables import MapTable
@@ -118,9 +119,12 @@ class Mapping:
                     Fault(
                         WRAP,
                         float(t_host_s[row]),
-                        f"{self.names[column]} began again: {before[row, column]:.6g} → {raw[row, column]:.6g}. The "
-                        f"turn "
-                        "is counted.",
+                        worded(
+                            "{name} began again: {before} → {now}. The turn is counted.",
+                            name=self.names[column],
+                            before=f"{before[row, column]:.6g}",
+                            now=f"{raw[row, column]:.6g}",
+                        ),
                     )
                 )
             turns = self._turns + np.cumsum(turns, axis=0)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ulna.ground.arrays import F64, Bool
+from ulna.ground.worded import listed, worded
 from ulna.live.faults import CLOCK_JUMP, DOUBTFUL, GAP, JUMP, REPEAT, RESET, SWAP, WRAP, Fault
 from ulna.live.mapping import Mapping
 from ulna.live.samples import Samples
@@ -120,7 +121,9 @@ class Plausible:
             if dt_device == 0.0 and np.array_equal(row.raw, before.raw):
                 if not self._repeating:
                     self._repeating = True
-                    faults.append(Fault(REPEAT, t, f"the reading of {row.t_device_s:.3f} s came again."))
+                    faults.append(
+                        Fault(REPEAT, t, worded("the reading of {time} s came again.", time=f"{row.t_device_s:.3f}"))
+                    )
                 return faults
             clock = self._clock(dt_device, dt_host, before.t_device_s, row.t_device_s)
             faults += [Fault(kind, t, text) for kind, text in clock]
@@ -129,12 +132,12 @@ class Plausible:
                 dt = dt_device if dt_host < _CLOCK_S else max(dt_host, dt_device)
         self._repeating = False
         if dt > self._gap_limit():
-            faults.append(Fault(GAP, t, f"a gap of {_milliseconds(dt)} in the stream."))
+            faults.append(Fault(GAP, t, worded("a gap of {time} in the stream.", time=_milliseconds(dt))))
         moved = np.abs(steps) > self._limit(dt)
         if self._reset(before.raw, row.raw):
             # its clock began again with it: one thing happened
             faults = [fault for fault in faults if fault.kind not in (CLOCK_JUMP, WRAP)]
-            return [*faults, Fault(RESET, t, "the device counts from zero again: zeros and turns are lost.")]
+            return [*faults, Fault(RESET, t, worded("the device counts from zero again: zeros and turns are lost."))]
         if moved.any():
             faults.append(self._moved(before.raw, row.raw, moved, steps, t))
         return faults
@@ -143,10 +146,13 @@ class Plausible:
         """What a device's clock did that time does not do."""
         for tick in _TICKS_S:
             if dt_device < 0.0 and abs(dt_device + tick - dt_host) < _CLOCK_S:
-                return [(WRAP, f"the device's clock began again after {tick:.0f} s. Its time goes on.")]
+                said = worded("the device's clock began again after {time} s. Its time goes on.", time=f"{tick:.0f}")
+                return [(WRAP, said)]
         if dt_device < 0.0 or dt_device > dt_host + _CLOCK_S:
-            word = "back" if dt_device < 0.0 else "ahead"
-            return [(CLOCK_JUMP, f"the device's clock went {word}: {before:.3f} s → {now:.3f} s.")]
+            times = {"before": f"{before:.3f}", "now": f"{now:.3f}"}
+            if dt_device < 0.0:
+                return [(CLOCK_JUMP, worded("the device's clock went back: {before} s → {now} s.", **times))]
+            return [(CLOCK_JUMP, worded("the device's clock went ahead: {before} s → {now} s.", **times))]
         return []
 
     def _reset(self, before: F64, now: F64) -> bool:
@@ -167,10 +173,14 @@ class Plausible:
             a, b = where
             swapped = np.abs([now[a] - before[b], now[b] - before[a]]) <= self._limit(0.0) * turn[[a, b]]
             if swapped.all():
-                return Fault(SWAP, t, f"{names[a]} and {names[b]} changed places.")
-        said = ", ".join(f"{names[k]} by {360.0 * steps[k]:.3g}°" for k in where[:3])
-        more = f" and {len(where) - 3} more" if len(where) > 3 else ""
-        return Fault(JUMP, t, f"{said}{more} from one reading to the next, faster than an arm is turned.")
+                return Fault(SWAP, t, worded("{one} and {other} changed places.", one=names[a], other=names[b]))
+        said = listed(
+            [worded("{name} by {degrees}°", name=names[k], degrees=f"{360.0 * steps[k]:.3g}") for k in where[:3]]
+        )
+        if len(where) > 3:
+            said = worded("{some} and {count} more", some=said, count=len(where) - 3)
+        text = worded("{which} from one reading to the next, faster than an arm is turned.", which=said)
+        return Fault(JUMP, t, text)
 
     def _measure(self, samples: Samples, interrupted: bool) -> None:
         """The period, by our clock: a device's may be wrong."""

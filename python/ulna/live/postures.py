@@ -8,6 +8,7 @@ import numpy as np
 
 from ulna.arm.arm import Arm
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.figures import Calibrated
 
 NEAR_STOP_RAD = math.radians(2.0)
@@ -35,7 +36,11 @@ def near_stops(arm: Arm, q_rad: F64) -> list[str]:
         if left >= (NEAR_STOP_MM if joint.slides else NEAR_STOP_RAD):
             continue
         far = f"{abs(left):.1f} mm" if joint.slides else f"{math.degrees(abs(left)):.1f}°"
-        found.append(f"joint {k} is {far} {'from its stop' if left >= 0.0 else 'beyond its limit'}")
+        found.append(
+            worded("joint {joint} is {far} from its stop", joint=k, far=far)
+            if left >= 0.0
+            else worded("joint {joint} is {far} beyond its limit", joint=k, far=far)
+        )
     return found
 
 
@@ -47,4 +52,6 @@ def folded(arm: Calibrated, q_rad: F64) -> list[str]:
     if sizes[2] >= FOLDED * sizes[1]:
         return []
     along = ", ".join(f"{value:.2f}" for value in directions[:, 2])
-    return [f"stretched or folded: along ({along}) joints hardly move the tip; take another posture"]
+    return [
+        worded("stretched or folded: along ({along}) joints hardly move the tip; take another posture", along=along)
+    ]

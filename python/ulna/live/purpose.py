@@ -9,6 +9,7 @@ from pathlib import Path
 from ulna.arm.arm import Arm
 from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.planning.file import load_plan_spec
 from ulna.planning.from_study import spec_of_study
 from ulna.planning.refusals import check, free_parameters
@@ -77,7 +78,13 @@ def _of_study(path: Path, arm: Arm, artefact: str | None) -> Purpose:
     count = sum(len(group) for group in study.readings)
     remarks = []
     if count:
-        remarks.append(f"{path}: its {count} readings are not taken into the session; what is known begins from ARM.")
+        remarks.append(
+            worded(
+                "{path}: its {count} readings are not taken into the session; what is known begins from ARM.",
+                path=str(path),
+                count=count,
+            )
+        )
     other = _not_taken(study.fit)
     if other:
         remarks.append(

@@ -14,6 +14,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.faults import DOUBTFUL
 from ulna.live.features import Feature, Notebook, Point
 from ulna.live.figures import LENGTH, Calibrated, Figure
@@ -26,7 +27,9 @@ from ulna.live.trigger import Refused, Taken
 
 TIP_S = 0.1
 """So often a program is told where the tip is."""
-UNSURE = "how its encoders scatter is not known, so nothing tells rest from motion. State --encoder-u, or give a result"
+UNSURE = worded(
+    "how its encoders scatter is not known, so nothing tells rest from motion. State --encoder-u, or give a result"
+)
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ class ReadOut:
     def ask(self) -> Set | Refused:
         """A touch, now."""
         if self.doubt is not None:
-            return Refused(f"the angles may be wrong: {self.doubt}")
+            return Refused(worded("the angles may be wrong: {doubt}", doubt=self.doubt))
         if self._rests.newest() is not None and not self._tells:
             return Refused(UNSURE)
         return self._answer(self._rests.ask())
@@ -183,7 +186,7 @@ class ReadOut:
         rest = self._rests.stillness(window) if self._tells else None
         figures = tuple(self.arm.point(q_rad, "the tip"))
         if self.doubt is not None:
-            why = f"the angles may be wrong: {self.doubt}"
+            why = worded("the angles may be wrong: {doubt}", doubt=self.doubt)
             figures = tuple(Figure(each.name, each.unit, None, None, None, why) for each in figures)
         warned = (*near_stops(self.arm.arm, q_rad), *folded(self.arm, q_rad))
         target = self._target()

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.recent import Recent, Window
 from ulna.live.samples import Samples
 from ulna.live.still import LEAST_SAMPLES, StillLimits, Stillness, stillness
@@ -77,7 +78,7 @@ class Rests:
         """A touch, asked for: at the end of a window, as by the arm's button, or now."""
         window = window or self.newest()
         if window is None or self._trigger is None:
-            return Refused("too little came yet: hold still and try again")
+            return Refused(worded("too little came yet: hold still and try again"))
         return self._trigger.ask(*self._places(window))
 
     def stillness(self, window: Window, part: float = 1.0) -> Stillness | None:

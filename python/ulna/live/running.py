@@ -22,6 +22,7 @@ from ulna.calibration.identify import Identification, identify
 from ulna.calibration.running import run_assembled
 from ulna.ground.arrays import F64, I64, Bool
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.touches import Touch, counting, held_out, leaf_of, readings_of
 from ulna.study.assembly import Assembled, assemble
 from ulna.study.data import FitOptions, Noise, Prior
@@ -109,7 +110,7 @@ class RunningFit:
         """The touches that count as a study. Raises UlnaInputError where there are none."""
         count = counting(self.touches)
         if not count:
-            raise UlnaInputError(f"{LABEL}: there are none; expected one at least. Touch something.")
+            raise UlnaInputError(worded("touches so far: there are none; expected one at least. Touch something."))
         return self._study(count)
 
     def _study(self, touches: Sequence[Touch]) -> Study:

@@ -15,6 +15,7 @@ from ulna.arm.arm import Arm
 from ulna.artefacts.kinds import kind_of
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import DOUBTFUL
 from ulna.live.fresh import Fresh, done, next_fresh, stands_still
@@ -76,8 +77,14 @@ class Session:
         channels = len(stream.mapping.columns)
         if channels != arm.n:
             raise UlnaInputError(
-                f"{stream.source.hello.device}: {channels} channels are mapped to joints, arm '{arm.name}' has "
-                f"{arm.n}; expected one for each. Say which they are: key 'map.channels' of a source file."
+                worded(
+                    "{device}: {channels} channels are mapped to joints, arm '{arm}' has {joints}; expected one for "
+                    "each. Say which they are: key 'map.channels' of a source file.",
+                    device=stream.source.hello.device,
+                    channels=channels,
+                    arm=arm.name,
+                    joints=arm.n,
+                )
             )
         _check_signs(arm)
         self.arm, self.spec, self.stream, self.journal = arm, spec, stream, journal
@@ -149,8 +156,11 @@ class Session:
         Raises UlnaInputError where there is nothing to judge."""
         if places and self.fit.fitted is None:
             raise UlnaInputError(
-                f"held out: {len(self.fit.counting())} touches are too few for a fit; expected one to be judged. Touch "
-                "on where it is suggested, then hold out."
+                worded(
+                    "held out: {count} touches are too few for a fit; expected one to be judged. Touch on where it is "
+                    "suggested, then hold out.",
+                    count=len(self.fit.counting()),
+                )
             )
         self.fresh_places = places
         if self.journal is not None:
@@ -245,7 +255,7 @@ class Session:
     def _judged(self, found: Taken) -> Refused | Happened:
         if self.stream.doubtful:
             return Refused(
-                "the angles are in doubt since a fault of the stream: check the arm, then say they are right"
+                worded("the angles are in doubt since a fault of the stream: check the arm, then say they are right")
             )
         next_one = self._suggestion
         expected = None if next_one is None else Expected(next_one.feature, next_one.here)
@@ -254,9 +264,11 @@ class Session:
         if again is not None:
             if self._suggestion is not None:
                 self.guide.refused(self._suggestion)
-            return Refused(f"the same pose as touch {again}, which tells nothing new: take another posture")
+            return Refused(
+                worded("the same pose as touch {number}, which tells nothing new: take another posture", number=again)
+            )
         if self.fresh_places and self._stands_still(found, told):
-            return Refused("it stands where it was touched before: put it in a fresh place, to judge by")
+            return Refused(worded("it stands where it was touched before: put it in a fresh place, to judge by"))
         if expected is None or expected.here:
             self._against = self._against + 1 if told.moved else 0
         self.place = self.place + 1 if told.moved else max(self.place, 1)
@@ -321,7 +333,7 @@ class Session:
             self.no_fit = None
         except UlnaInputError as error:
             # too few, at first: what is known so far is told all the same
-            self.no_fit = str(error)
+            self.no_fit = kept(error)
 
     def _scatter(self, touch: Touch) -> float | None:
         own = [each for each in self._own() if each.feature == touch.feature]

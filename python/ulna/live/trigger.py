@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.still import StillLimits, Stillness, stillness
 
 NEAR_STOP_RAD = np.radians(0.5)
@@ -69,11 +70,15 @@ class Trigger:
         window = self._window(t_s)
         if window is None:
             return Refused(
-                f"the stream is younger than {self.limits.window_s:g} s, or has a gap: hold still and try again"
+                worded(
+                    "the stream is younger than {seconds} s, or has a gap: hold still and try again",
+                    seconds=f"{self.limits.window_s:g}",
+                )
             )
         found = stillness(t_s[window], p_mm[window], covariance_mm2, self.limits)
         if not found.still:
-            return Refused(f"moved {max(found.drift_mm, 2.0 * found.spread_mm):.3f} mm while touching: hold still")
+            moved = f"{max(found.drift_mm, 2.0 * found.spread_mm):.3f}"
+            return Refused(worded("moved {moved} mm while touching: hold still", moved=moved))
         return self._taken(t_s[window], q_rad[window], p_mm[window], found)
 
     def _window(self, t_s: F64) -> slice | None:
@@ -92,7 +97,9 @@ class Trigger:
         mean_rad = q_rad.mean(axis=0)
         stop = self._at_stop(mean_rad)
         if stop is not None:
-            return Refused(f"joint {stop} is at its stop, where readings are wrong: take another posture")
+            return Refused(
+                worded("joint {joint} is at its stop, where readings are wrong: take another posture", joint=stop)
+            )
         return Taken(mean_rad, found, float(t_s[0]), float(t_s[-1]))
 
     def _at_stop(self, q_rad: F64) -> int | None:

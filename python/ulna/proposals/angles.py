@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.proposals.answers import Answers, Question
 from ulna.proposals.columns import Column, Taken
 from ulna.proposals.words import ANGLE_UNITS
@@ -45,9 +46,11 @@ def angles_of(
     said = {ours: theirs for ours, theirs in mapped.items() if re.fullmatch(r"q\d+", ours) and theirs in by_name}
     if said:
         in_order = sorted(said, key=lambda ours: int(ours[1:]))
-        return _taken([by_name[said[ours]] for ours in in_order], ["said with --column"] * len(said))
+        return _taken([by_name[said[ours]] for ours in in_order], [worded("said with --column")] * len(said))
     if joints and all(name in by_name for name in joints):
-        return _taken([by_name[str(name)] for name in joints], ["the joint's name in the drawing"] * len(joints))
+        return _taken(
+            [by_name[str(name)] for name in joints], [worded("the joint's name in the drawing")] * len(joints)
+        )
     groups: dict[str, list[Column]] = {}
     for column in columns:
         heading = column.meaning
@@ -58,13 +61,14 @@ def angles_of(
     if len(fitting) == 1:
         group = next(iter(fitting.values()))
         zero = group[0].meaning.number == 0
-        why = [f"'{c.meaning.word}' {c.meaning.number}" + (", counted from 0" if zero else "") for c in group]
+        why = [f"'{c.meaning.word}' {c.meaning.number}" for c in group]
+        if zero:
+            why = [worded("{column}, counted from 0", column=each) for each in why]
         return _taken(group, why)
     if fitting:
         shown = " or ".join(f"'{group[0].name}' to '{group[-1].name}'" for group in fitting.values())
-        return Question(
-            "columns", "--column q1=NAME --column q2=NAME …", f"which columns are the encoders' angles, {shown}"
-        )
+        asks = worded("which columns are the encoders' angles, {columns}", columns=shown)
+        return Question("columns", "--column q1=NAME --column q2=NAME …", asks)
     there = ", ".join(f"'{column.name}'" for column in columns)
     raise UlnaInputError(
         f"{path}: no columns of angles are recognised among {there[:200]}; expected one for each axis, with its "
@@ -103,9 +107,9 @@ def unit_of(path: Path, angles: Angles, answers: Answers) -> tuple[str, str] | Q
                 f"{path}: --angle says {answers.angle}, but the file says '{heads}' of its angles; expected the same. "
                 "Leave --angle out, or correct the file."
             )
-        return answers.angle, "said with --angle"
+        return answers.angle, worded("said with --angle")
     if own:
-        return own.pop(), f"the file says '{heads}'"
+        return own.pop(), worded("the file says '{unit}'", unit=heads)
     return _by_range(angles)
 
 
@@ -116,16 +120,20 @@ def _by_range(angles: Angles) -> tuple[str, str] | Question:
     high = [float(np.quantile(each, 0.99, method="nearest")) for each in values]
     most, span = max(map(abs, [*low, *high])), max(h - lo for lo, h in zip(low, high, strict=True))
     whole = all(bool((each == np.round(each)).all()) for each in values)
-    seen = f"they go from {min(low):.6g} to {max(high):.6g}" + (", all whole numbers" if whole else "")
+    between = {"low": f"{min(low):.6g}", "high": f"{max(high):.6g}"}
+    seen = (
+        worded("they go from {low} to {high}, all whole numbers", **between)
+        if whole
+        else worded("they go from {low} to {high}", **between)
+    )
     if whole and most > MOST_DEG:
         return "counts", seen
     if not whole and span >= LEAST_SPAN and most <= MOST_RAD:
-        return "rad", f"{seen}: in degrees the arm would hardly have moved"
+        return "rad", worded("{seen}: in degrees the arm would hardly have moved", seen=seen)
     if not whole and 3 * MOST_RAD < most <= MOST_DEG:
-        return "deg", f"{seen}: more than two turns in rad"
-    return Question(
-        "angle", "--angle rad, deg or counts", f"in which unit are the angles: {seen}", ("rad", "deg", "counts")
-    )
+        return "deg", worded("{seen}: more than two turns in rad", seen=seen)
+    asks = worded("in which unit are the angles: {seen}", seen=seen)
+    return Question("angle", "--angle rad, deg or counts", asks, ("rad", "deg", "counts"))
 
 
 def counts_question(angles: Angles) -> Question:
@@ -134,6 +142,10 @@ def counts_question(angles: Angles) -> Question:
     return Question(
         "counts_per_turn",
         f"--counts-per-turn N, once or {angles.count} times",
-        f"how many counts has one turn of an encoder (the readings spread over {spread:.0f}; one number, or one for "
-        f"each of the {angles.count} axes)",
+        worded(
+            "how many counts has one turn of an encoder (the readings spread over {spread}; one number, or one for "
+            "each of the {count} axes)",
+            spread=f"{spread:.0f}",
+            count=angles.count,
+        ),
     )

@@ -18,6 +18,7 @@ from ulna.exchange.urdf.arm import arm_from_chain
 from ulna.exchange.urdf.chain import read_chain
 from ulna.exchange.urdf.units import in_units
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import listed, worded
 from ulna.proposals.answers import Answers, Question
 
 HAND = 0.2
@@ -47,14 +48,16 @@ def drawn_arm(answers: Answers) -> Drawn | list[Question] | None:
     UlnaInputError for a drawing that cannot be used."""
     if answers.arm is not None:
         arm = Arm.load(answers.arm)
-        return Drawn(arm, f"as {answers.arm} says", (answers.arm,), _names(arm))
+        return Drawn(arm, worded("as {file} says", file=str(answers.arm)), (answers.arm,), _names(arm))
     if answers.dh is not None:
         if answers.convention is None:
             return [
                 Question(
                     "convention",
                     "--convention dh or modified-dh",
-                    "does a row of the DH table hold alpha and a after its joint (dh) or before it (modified-dh)",
+                    worded(
+                        "does a row of the DH table hold alpha and a after its joint (dh) or before it (modified-dh)"
+                    ),
                     ("dh", "modified-dh"),
                 )
             ]
@@ -62,14 +65,23 @@ def drawn_arm(answers: Answers) -> Drawn | list[Question] | None:
         table = read_dh(answers.dh, answers.length_unit, answers.angle_unit)
         found = arm_from_table(table, convention, answers.tip)
         return Drawn(
-            found.arm, f"of the table {answers.dh.name}", (answers.dh,), _names(found.arm), tuple(found.remarks)
+            found.arm,
+            worded("of the table {file}", file=answers.dh.name),
+            (answers.dh,),
+            _names(found.arm),
+            tuple(found.remarks),
         )
     if answers.urdf is not None:
         chain = in_units(
             read_chain(answers.urdf, answers.tip_link, answers.base_link), answers.length_unit, answers.angle_unit
         )
         arm, _ = arm_from_chain(chain)
-        said = f"of {answers.urdf.name}, from link '{chain.base_link}' to link '{chain.tip_link}'"
+        said = worded(
+            "of {file}, from link '{base}' to link '{tip}'",
+            file=answers.urdf.name,
+            base=chain.base_link,
+            tip=chain.tip_link,
+        )
         return Drawn(arm, said, (answers.urdf,), _names(arm), tuple(chain.remarks))
     return None
 
@@ -81,14 +93,16 @@ def _names(arm: Arm) -> tuple[str | None, ...]:
 DRAWING = Question(
     "drawing",
     "--reach MM, --dh TABLE, --urdf FILE or --arm FILE",
-    "what is known of the arm: a table or a drawing of it, or how far it reaches from its base to the tip",
+    worded("what is known of the arm: a table or a drawing of it, or how far it reaches from its base to the tip"),
 )
 
 
 PARALLEL = Question(
     "parallel",
     "--parallel N, once for each, or --parallel none",
-    "which axes, counted from the base, are parallel to the next one, or none (all stand across their neighbours)",
+    worded(
+        "which axes, counted from the base, are parallel to the next one, or none (all stand across their neighbours)"
+    ),
 )
 
 
@@ -123,9 +137,13 @@ def by_reach(axes: int, reach_mm: float, parallel: Sequence[str], name: str) -> 
         joints.append(Joint(0.0, alpha_rad, link_mm if same else 0.0, link_mm if has and not same else 0.0))
     tip = Probe(ASIDE * reach_mm, 0.0, HAND * reach_mm)
     made, probes, _ = hayati_where_parallel((*joints, Joint()), {"tip": tip})
-    twos = ", ".join(f"{k} and {k + 1}" for k in range(1, axes) if to_next[k - 1])
-    how = f"axes {twos} parallel, the others across their neighbours" if twos else "each axis across its neighbours"
-    said = f"nobody drew it: {how}, {reach_mm:g} mm from base to tip"
+    twos = listed([worded("{one} and {other}", one=k, other=k + 1) for k in range(1, axes) if to_next[k - 1]])
+    how = (
+        worded("axes {pairs} parallel, the others across their neighbours", pairs=twos)
+        if twos
+        else worded("each axis across its neighbours")
+    )
+    said = worded("nobody drew it: {how}, {reach} mm from base to tip", how=how, reach=f"{reach_mm:g}")
     return Drawn(Arm(name, tuple(made), probes), said, guessed=True)
 
 
@@ -140,13 +158,18 @@ def encoder_questions(drawn: Drawn, answers: Answers) -> list[Question]:
             Question(
                 "zeros",
                 "--zeros known or unknown",
-                "are the encoders' zeros those of the drawing (known), or wherever they were mounted (unknown)",
+                worded("are the encoders' zeros those of the drawing (known), or wherever they were mounted (unknown)"),
                 choices,
             )
         )
     if answers.signs is None:
         asked.append(
-            Question("signs", "--signs known or unknown", "does each encoder count the way the drawing turns", choices)
+            Question(
+                "signs",
+                "--signs known or unknown",
+                worded("does each encoder count the way the drawing turns"),
+                choices,
+            )
         )
     return asked
 

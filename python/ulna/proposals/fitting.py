@@ -12,6 +12,7 @@ from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.names import check_name
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.proposals.angles import Angles
 from ulna.proposals.answers import Answers, Question
 from ulna.proposals.arms import Drawn
@@ -68,7 +69,7 @@ def ball_question(what: Stated, drawn: Drawn, answers: Answers, path: Path) -> l
     try:
         kind_of(what.artefact).check_probes(what.artefact, drawn.arm, range(len(drawn.arm.probes)), str(path))
     except UlnaInputError:
-        return [Question("ball", "--ball MM", "what is the diameter of the probe's ball, in mm")]
+        return [Question("ball", "--ball MM", worded("what is the diameter of the probe's ball, in mm"))]
     return []
 
 
@@ -81,7 +82,12 @@ def conditions_on_cells(header: Header, angles: Angles, answers: Answers) -> dic
         told = ", ".join(f"{header.at(row, column.name)}: '{column.texts[row - 1][:20]}'" for row, column in bad[:6])
         more = ", …" if len(bad) > 6 else ""
         rows = len({row for row, _ in bad})
-        asks = f"shall {rows} row{'s' * (rows > 1)} be left out in which an axis has no number ({told}{more})"
+        cells = f"{told}{more}"
+        asks = (
+            worded("shall {count} rows be left out in which an axis has no number ({cells})", count=rows, cells=cells)
+            if rows > 1
+            else worded("shall 1 row be left out in which an axis has no number ({cells})", cells=cells)
+        )
         return Question("skip_bad", "--skip-bad", asks, ("yes",))
     where: dict[str, Any] = {}
     for k, column in enumerate(angles.columns, start=1):

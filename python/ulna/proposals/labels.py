@@ -8,11 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import listed, one_by_one, recalled, templates, worded
 from ulna.proposals.answers import Question
 from ulna.proposals.columns import Column, Taken, named
 
+MEASURED = templates("length", "distance")
+"""What a column may hold that was measured."""
+
 _SHOWN = 6
-SAID, OWN = "said with --column", "Ulna's own name"
+SAID, OWN = worded("said with --column"), worded("Ulna's own name")
 
 
 @dataclass
@@ -30,7 +34,7 @@ class Labels:
         empty = len(column.texts) - column.filled
         if filled and empty and column.texts[0] != "":
             self.fill_down.append(ours)
-            why += f"; {empty} empty cells mean the cell above"
+            why = worded("{why}; {count} empty cells mean the cell above", why=why, count=empty)
         self.taken.append(Taken(column.name, ours, why))
 
     def has(self, ours: str) -> bool:
@@ -45,8 +49,8 @@ def _of_role(columns: Sequence[Column], role: str, ours: str, mapped: Mapping[st
     own = named(columns, ours)
     if own is not None:
         return own, OWN
-    worded = [column for column in columns if column.meaning.role == role]
-    exact = sorted(worded, key=lambda column: (column.filled == 0, len(column.name)))
+    by_word = [column for column in columns if column.meaning.role == role]
+    exact = sorted(by_word, key=lambda column: (column.filled == 0, len(column.name)))
     return (exact[0], f"'{exact[0].meaning.word}'") if exact else None
 
 
@@ -57,10 +61,14 @@ def feature_labels(
     meant = _of_role(columns, "feature", "feature", mapped)
     if meant is None or (meant[0].filled == 0 and len(columns) > 1):
         pairs = [c for c in columns if not c.numeric and len(c.labels) == len(features) and c.meaning.role is None]
-        meant = (pairs[0], f"its cells hold {len(features)} labels") if len(pairs) == 1 else None
+        meant = (pairs[0], worded("its cells hold {count} labels", count=len(features))) if len(pairs) == 1 else None
     if meant is None:
         found.questions.append(
-            Question("columns", "--column feature=NAME", f"which column says what was touched ({_listed(features)})")
+            Question(
+                "columns",
+                "--column feature=NAME",
+                worded("which column says what was touched ({features})", features=_listed(features)),
+            )
         )
         return None
     column, why = meant
@@ -70,14 +78,22 @@ def feature_labels(
             Question(
                 "names",
                 f"--name 'feature.{features[0]}=LABEL' for each",
-                f"which of the labels {_listed(column.labels)} in '{column.name}' is which of {_listed(features)}",
+                worded(
+                    "which of the labels {labels} in '{column}' is which of {features}",
+                    labels=_listed(column.labels),
+                    column=column.name,
+                    features=_listed(features),
+                ),
             )
         )
         return column
     if any(ours != label for ours, labels in matched.items() for label in labels):
         found.names["feature"] = matched
         shown = list(matched.items())[:_SHOWN]
-        why += "; " + ", ".join(f"{' and '.join(map(repr, theirs))} is {ours}" for ours, theirs in shown)
+        means = [
+            worded("{labels} is {ours}", labels=" and ".join(map(repr, theirs)), ours=ours) for ours, theirs in shown
+        ]
+        why = one_by_one([why, listed(means)])
     found.take(column, "feature", why, filled=True)
     return column
 
@@ -118,18 +134,24 @@ def standing_labels(
         return
     meant = _of_role(columns, "standing", "placement", mapped)
     if meant is not None and (meant[1] in (SAID, OWN) or _groups(meant[0], touched)):
-        found.take(meant[0], "placement", f"{meant[1]}: {len(meant[0].labels)} standings", filled=True)
+        found.take(
+            meant[0],
+            "placement",
+            worded("{why}: {count} standings", why=meant[1], count=len(meant[0].labels)),
+            filled=True,
+        )
         return
     for column in columns:
         if column.meaning.role == "measurement" and _groups(column, touched):
-            why = f"'{column.meaning.word}': {len(column.labels)} groups of rows"
+            word, count = f"'{column.meaning.word}'", len(column.labels)
+            why = worded("{why}: {count} groups of rows", why=word, count=count)
             found.take(column, "placement", why, filled=True)
             return
     found.questions.append(
         Question(
             "standing",
             "--column placement=NAME, or --one-standing",
-            "which column says where the artefact stood (or one: it stood still)",
+            worded("which column says where the artefact stood (or one: it stood still)"),
         )
     )
 
@@ -162,7 +184,11 @@ def other_labels(
             used.add(meant[0].name)
     if measured is not None and not found.has(measured):
         found.questions.append(
-            Question("columns", f"--column {measured}=NAME", f"which column holds the {measured} that was measured")
+            Question(
+                "columns",
+                f"--column {measured}=NAME",
+                worded("which column holds the {what} that was measured", what=recalled(measured, MEASURED)),
+            )
         )
     for column in columns:
         if column.name in used:
@@ -176,19 +202,22 @@ def other_labels(
         if heading.role == "temperature" and column.numeric and not column.bad and not found.has("temperature"):
             found.take(column, "temperature", f"'{heading.word}'")
         elif heading.role == "measurement" and column.texts.n_unique() == len(column.texts) and not found.has("id"):
-            found.take(column, "id", f"'{heading.word}': another in each row")
+            found.take(column, "id", worded("{why}: another in each row", why=f"'{heading.word}'"))
         else:
             found.taken.append(Taken(column.name, "", _unused(column)))
 
 
 def _unused(column: Column) -> str:
     if column.meaning.goal:
-        return "what was wanted, not what was read"
+        return worded("what was wanted, not what was read")
     if column.meaning.role == "aside":
-        return f"'{column.meaning.word}', {column.filled} cells"
+        return worded("{why}, {count} cells", why=f"'{column.meaning.word}'", count=column.filled)
     if column.meaning.role == "temperature":
-        return f"'{column.meaning.word}', but {len(column.bad)} cells hold no number"
-    return f"nothing that a study needs: {_listed(column.labels)}" if column.filled else "all its cells are empty"
+        why, count = f"'{column.meaning.word}'", len(column.bad)
+        return worded("{why}, but {count} cells hold no number", why=why, count=count)
+    if not column.filled:
+        return worded("all its cells are empty")
+    return worded("nothing that a study needs: {labels}", labels=_listed(column.labels))
 
 
 def _listed(labels: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.table import read_header
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.proposals.angles import Angles, angles_of, counts_question, unit_of
 from ulna.proposals.answers import Answers, Question, UnansweredError, check
 from ulna.proposals.arms import DRAWING, PARALLEL, Drawn, as_asked, by_reach, drawn_arm, encoder_questions
@@ -85,7 +86,8 @@ def opened(answers: Answers) -> Opened:
     path = answers.readings
     if path is None:
         raise UnansweredError(
-            "ulna new", [Question("readings", "--readings FILE", "which file has the readings, a row for each touch")]
+            "ulna new",
+            [Question("readings", "--readings FILE", worded("which file has the readings, a row for each touch"))],
         )
     layout = Layout.of_options(answers.columns, answers.names, **{key: getattr(answers, key) for key in _LAYOUT})
     bare, seen = seen_dialect(path, replace(layout, columns={}, names={}), WHAT)
@@ -145,7 +147,7 @@ def propose(answers: Answers) -> Proposal:
     if answers.of_rows is not None:
         name, label = answers.of_rows
         naming = next(column for column in columns if column.name == name)
-        labels.take(naming, "artefact", f"the rows of '{label}'", filled=True)
+        labels.take(naming, "artefact", worded("the rows of '{label}'", label=label), filled=True)
         bad = {**bad, "artefact": label}
     taken = {each.column: each for each in [*labels.taken, *angles.taken]}
     entry = entry_of(answers, file.seen, unit[0], list(taken.values()), labels, dict(layout.names), bad)
@@ -170,7 +172,7 @@ def labels_of(
             column = next((c for c in rest if c.name in (layout.columns.get("feature"), "feature")), None)
             column = column or next((c for c in rest if c.meaning.role == "feature"), None)
             if column is not None:
-                found.take(column, "feature", "said with --name", filled=True)
+                found.take(column, "feature", worded("said with --name"), filled=True)
             touched = column
         else:
             touched = feature_labels(rest, features, alike, layout.columns, found)
@@ -180,7 +182,7 @@ def labels_of(
     rest = [column for column in rest if column.name not in taken]
     for column in list(rest):
         if re.fullmatch(r"[xyzu]|p\d+", column.name) and column.numeric and (not features or kind.poses == 2):
-            found.take(column, column.name, "Ulna's own name")
+            found.take(column, column.name, worded("Ulna's own name"))
             rest.remove(column)
     other_labels(path, rest, None if artefact.length_mm is not None else kind.measured_column, layout.columns, found)
     return found

@@ -16,6 +16,7 @@ from ulna.artefacts.kinds import KINDS
 from ulna.formats.names import check_name
 from ulna.formats.units import MM_PER
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 from ulna.proposals.answers import Answers, Question, UnansweredError
 from ulna.proposals.columns import Column
 from ulna.proposals.propose import Proposal, opened, propose
@@ -146,11 +147,17 @@ def _of_one_file(answers: Answers, artefacts: Sequence[Touched]) -> list[Answers
             f"{nearest(strange[0], labels)} Correct it."
         )
     if lacking:
-        asks = f"what is '{{}}' in column '{column.name}', and of which size"
         raise UnansweredError(
             str(answers.readings),
             [
-                Question("artefact", f"--artefact '{label}=KIND:VALUE'", asks.format(label), about=label)
+                Question(
+                    "artefact",
+                    f"--artefact '{label}=KIND:VALUE'",
+                    worded(
+                        "what is '{label}' in column '{column}', and of which size", label=label, column=column.name
+                    ),
+                    about=label,
+                )
                 for label in lacking
             ],
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,16 +15,23 @@ from ulna.formats.layout import Layout, TableKeys
 from ulna.formats.table import read_header
 from ulna.formats.units import MM_PER, Units
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 from ulna.proposals.answers import Answers, Question
 from ulna.proposals.columns import Column, columns_of
 from ulna.proposals.dialect import seen_dialect
 from ulna.proposals.words import LENGTH_UNITS
 
 #: key of an artefact's table → the flag, and what is asked; of a kind whose table has the key and cannot do without
-FLAGS = {
-    "length": ("--length MM", "how long is the {kind}, in mm, as its certificate says"),
-    "diameter": ("--diameter MM", "what is the diameter of the {kind}, in mm"),
-    "features": ("--features FILE", "which table has the coordinates of the points: columns feature, x, y, z"),
+FLAGS: dict[str, tuple[str, Callable[[str], str]]] = {
+    "length": (
+        "--length MM",
+        lambda kind: worded("how long is the {kind}, in mm, as its certificate says", kind=kind),
+    ),
+    "diameter": ("--diameter MM", lambda kind: worded("what is the diameter of the {kind}, in mm", kind=kind)),
+    "features": (
+        "--features FILE",
+        lambda _: worded("which table has the coordinates of the points: columns feature, x, y, z"),
+    ),
 }
 
 
@@ -51,7 +58,7 @@ class Stated:
 def kind_question() -> Question:
     """Which artefact was touched."""
     *most, last = touched = tuple(name for name, kind in KINDS.items() if not kind.turned)
-    return Question("artefact", f"--artefact {', '.join(most)} or {last}", "what was touched", touched)
+    return Question("artefact", f"--artefact {', '.join(most)} or {last}", worded("what was touched"), touched)
 
 
 def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated | list[Question]:
@@ -82,7 +89,7 @@ def stated(answers: Answers, columns: Sequence[Column], label: Path) -> Stated |
                 f"--{name}: an artefact of kind '{kind.name}' has none; expected {_listed(fields)}. Leave it out."
             )
     if missing:
-        return [Question(name, FLAGS[name][0], FLAGS[name][1].format(kind=kind.name)) for name in missing]
+        return [Question(name, FLAGS[name][0], FLAGS[name][1](kind.name)) for name in missing]
     measured = kind.measured_column is not None and answers.length is None
     found = _features(answers, label) if answers.features is not None else None
     unit = found[1] if found else _own_unit(answers, columns, measured or own_points)
@@ -120,11 +127,13 @@ def _own_unit(answers: Answers, columns: Sequence[Column], measured: bool) -> st
     said = {LENGTH_UNITS.get(c.meaning.unit, "") for c in columns if c.numeric and c.meaning.role != "angle"} - {""}
     if len(said) == 1:
         return said.pop()
-    return answers.length_unit or _unit_question("the lengths in the readings")
+    return answers.length_unit or _unit_question(worded("the lengths in the readings"))
 
 
 def _unit_question(whose: str) -> Question:
-    return Question("length_unit", "--length-unit mm, m or in", f"in which unit are {whose}", ("mm", "m", "in"))
+    return Question(
+        "length_unit", "--length-unit mm, m or in", worded("in which unit are {whose}", whose=whose), ("mm", "m", "in")
+    )
 
 
 def _features(answers: Answers, label: Path) -> tuple[dict[str, Any], str | Question]:
@@ -157,7 +166,9 @@ def _features(answers: Answers, label: Path) -> tuple[dict[str, Any], str | Ques
     renamed = {ours: column.name for ours, column in taken.items() if column.name != ours}
     keys = seen | ({"columns": renamed} if renamed else {})
     unit: str | Question = (
-        said.pop() if said else answers.length_unit or _unit_question(f"the coordinates in {path.name}")
+        said.pop()
+        if said
+        else answers.length_unit or _unit_question(worded("the coordinates in {file}", file=path.name))
     )
     if keys:
         TableKeys.model_validate(keys)

@@ -15,6 +15,7 @@ from sqlalchemy import Connection, func, select
 from ulna.control.a3 import interval_test
 from ulna.control.staircase import staircase
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.records import asked, chain
 from ulna.records.bench import Bench, checked_text
 from ulna.records.entry import Entry
@@ -98,13 +99,23 @@ def _by_fleet(connection: Connection, arm: str, wanted: Wanted) -> Advice:
         tests[key] = tests.get(key, True) and row["verdict"] != BAD
     current = _interval(connection, arm, found)
     tested = interval_test(sum(tests.values()), len(tests), current, wanted.target, bounds_days=BOUNDS_DAYS)
-    arms = f"{len(fleet)} arm{'s' * (len(fleet) != 1)}"
-    of = f"{sum(tests.values())} of {len(tests)} tests of {arms} in tolerance as found"
+    said = {"good": str(sum(tests.values())), "all": str(len(tests)), "arms": str(len(fleet))}
+    of = (
+        worded("{good} of {all} tests of 1 arm in tolerance as found", good=said["good"], all=said["all"])
+        if len(fleet) == 1
+        else worded("{good} of {all} tests of {arms} arms in tolerance as found", **said)
+    )
     if tested.interval_days is None:
-        return Advice("NCSLI RP-1 A3", None, len(tests), current, f"{of}: {tested.basis.said}.")
-    sure = f"that the interval does not keep {wanted.target:.0%} is {tested.surely or 0.0:.0%} sure"
-    done = "it is changed" if tested.rejected else "it is kept"
-    return Advice("NCSLI RP-1 A3", tested.interval_days, len(tests), current, f"{of}; {sure}: {done}.")
+        few = worded("{of}: {basis}.", of=of, basis=tested.basis.said)
+        return Advice("NCSLI RP-1 A3", None, len(tests), current, few)
+    sure = worded(
+        "that the interval does not keep {target} is {surely} sure",
+        target=f"{wanted.target:.0%}",
+        surely=f"{tested.surely or 0.0:.0%}",
+    )
+    done = worded("it is changed") if tested.rejected else worded("it is kept")
+    why = worded("{of}; {sure}: {done}.", of=of, sure=sure, done=done)
+    return Advice("NCSLI RP-1 A3", tested.interval_days, len(tests), current, why)
 
 
 METHODS: dict[str, Callable[[Connection, str, Wanted], Advice]] = {

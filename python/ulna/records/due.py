@@ -7,6 +7,7 @@ from datetime import date
 
 from sqlalchemy import Connection, select
 
+from ulna.ground.worded import worded
 from ulna.records import asked, chain
 from ulna.records.tables import CERTIFIED, EQUIPMENT
 
@@ -44,10 +45,13 @@ def _due(connection: Connection, row: asked.Row, on: str) -> Due:
     name = row["name"]
     decided = asked.interval(connection, name)
     if decided is not None:
-        day, why = decided["due_at"][:10], f"{decided['days']:.0f} days from {decided['from_at'][:10]}"
+        day, why = (
+            decided["due_at"][:10],
+            worded("{days} days from {day}", days=f"{decided['days']:.0f}", day=decided["from_at"][:10]),
+        )
     else:
         day = _runs_out(connection, name)
-        why = "its certificate runs out" if day else "no interval was set"
+        why = worded("its certificate runs out") if day else worded("no interval was set")
     days = (date.fromisoformat(day) - date.fromisoformat(on)).days if day else None
     return Due(name, row["kind"], row["state"], day, days, why)
 

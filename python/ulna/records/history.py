@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import Connection, func, select
 
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import listed, worded
 from ulna.records import asked
 from ulna.records.acts.registry import ACTS
 from ulna.records.acts.standing import WITHDRAWN
@@ -98,7 +99,8 @@ _BY_KIND = ("filed", "event")
 
 def _filed(entry: Entry) -> str:
     rests = ", ".join(entry.stated.get("artefacts", ()))
-    return str(entry.stated["names"]["file"]) + (f", on {rests}" if rests else "")
+    file = str(entry.stated["names"]["file"])
+    return worded("{file}, on {artefacts}", file=file, artefacts=rests) if rests else file
 
 
 def _equipment(entry: Entry) -> str:
@@ -109,19 +111,28 @@ def _equipment(entry: Entry) -> str:
 
 def _certified(entry: Entry) -> str:
     stated = entry.stated
-    values = ", ".join(f"{v['quantity']} {v['value']:.10g} {v['unit']}, u {v['u']:.2g}" for v in stated["values"])
-    number = f", certificate {stated['number']}" if "number" in stated else ""
-    return values + number + (f", valid to {stated['valid_to']}" if "valid_to" in stated else "")
+    said = [f"{v['quantity']} {v['value']:.10g} {v['unit']}, u {v['u']:.2g}" for v in stated["values"]]
+    if "number" in stated:
+        said.append(worded("certificate {number}", number=stated["number"]))
+    if "valid_to" in stated:
+        said.append(worded("valid to {day}", day=stated["valid_to"]))
+    return listed(said)
 
 
 def _issued(entry: Entry) -> str:
-    supersedes = f", supersedes {entry.stated['supersedes']}" if entry.stated.get("supersedes") else ""
-    return f"certificate {entry.subject}{supersedes}"
+    said = worded("certificate {number}", number=entry.subject)
+    if not entry.stated.get("supersedes"):
+        return said
+    return listed([said, worded("supersedes {number}", number=entry.stated["supersedes"])])
 
 
 def _standing(entry: Entry) -> str:
-    what = f"{entry.subject[:12]}…" if len(entry.subject) == 64 else f"certificate {entry.subject}"
-    return f"{what} {entry.stated['state']}: {entry.stated['reason']}"
+    of_file = len(entry.subject) == 64
+    what = f"{entry.subject[:12]}…" if of_file else worded("certificate {number}", number=entry.subject)
+    state, reason = entry.stated["state"], entry.stated["reason"]
+    if state == WITHDRAWN:
+        return worded("{what} withdrawn: {reason}", what=what, reason=reason)
+    return f"{what} {state}: {reason}"
 
 
 _TEXTS: dict[str, Callable[[Entry], str]] = {
@@ -133,7 +144,9 @@ _TEXTS: dict[str, Callable[[Entry], str]] = {
     "setting": lambda entry: str(entry.stated["value"]),
     "issued": _issued,
     "standing": _standing,
-    "interval": lambda entry: f"{entry.stated['days']:.0f} days ({entry.stated['method']})",
+    "interval": lambda entry: worded(
+        "{days} days ({method})", days=f"{entry.stated['days']:.0f}", method=entry.stated["method"]
+    ),
 }
 
 

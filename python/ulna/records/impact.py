@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, select
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.records import asked
 from ulna.records.filed.kind import BAD, GOOD, OUT
 from ulna.records.history import Happening, history, withdrawn
@@ -40,7 +41,7 @@ def impact(connection: Connection, name: str, since: str | None = None, until: s
     row = asked.equipment(connection, name)
     if since is not None and until is not None and since > until:
         raise UlnaInputError(f"record: good on {since[:10]}, bad on {until[:10]}; expected good first. Turn them.")
-    good, bad, why = since, until, "as stated"
+    good, bad, why = since, until, worded("as stated")
     if row["kind"] == "artefact":
         if until is None:
             raise UlnaInputError(

@@ -6,9 +6,12 @@ from collections.abc import Sequence
 
 from ulna.artefacts.lent import Lent
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import recalled, templates, worded
 from ulna.records import asked
 from ulna.records.bench import Bench
 from ulna.records.due import today
+
+STATES = templates("quarantined", "retired", "in use")
 
 
 def lent(name: str, quantities: Sequence[str], expired_because: str | None) -> Lent:
@@ -24,7 +27,11 @@ def lent_by(bench: Bench, name: str, quantities: Sequence[str], expired_because:
         row = asked.equipment(connection, name, ("artefact",))
         if row["state"] != "in use":
             raise UlnaInputError(
-                f"'{name}' is {row['state']}; expected an artefact in use. Name another, or release it."
+                worded(
+                    "'{name}' is {state}; expected an artefact in use. Name another, or release it.",
+                    name=name,
+                    state=recalled(str(row["state"]), STATES),
+                )
             )
         known = str(row["name"])
         found = [asked.certified(connection, known, quantity, on) for quantity in quantities]
@@ -40,9 +47,13 @@ def lent_by(bench: Bench, name: str, quantities: Sequence[str], expired_because:
         return _lent(known, row, "")
     if expired_because is None:
         raise UlnaInputError(
-            f"the certificate of '{name}' was valid to {row['valid_to']}, and today is {on}; expected a valid one. "
-            "Enter the "
-            'new one, or say why this one is used: expired_because = "…".'
+            worded(
+                "the certificate of '{name}' was valid to {day}, and today is {today}; expected a valid one. Enter the "
+                'new one, or say why this one is used: expired_because = "…".',
+                name=name,
+                day=row["valid_to"],
+                today=on,
+            )
         )
     return _lent(known, row, f"; NOT VALID on {on}, used because: {expired_because}")
 

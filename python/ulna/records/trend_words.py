@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ulna.ground.digits import figure_mm, quantity
+from ulna.ground.worded import listed, one_by_one, worded
 from ulna.records.history import Point
 from ulna.records.trend import Trend
 
@@ -18,17 +19,27 @@ def chart_said(found: Trend) -> str:
     """Whether the newest is in control, and by which limits."""
     chart, limits, of = found.chart, found.chart.limits, found.points[-1]
     if limits.lower is None or limits.upper is None:
-        return f"{limits.basis.said}; nothing is said of control."
-    said = f"limits {figure_said(limits.lower, of)} to {figure_said(limits.upper, of)}, of the first {found.baseline}"
+        return worded("{basis}; nothing is said of control.", basis=limits.basis.said)
+    said = worded(
+        "limits {lower} to {upper}, of the first {count}",
+        lower=figure_said(limits.lower, of),
+        upper=figure_said(limits.upper, of),
+        count=found.baseline,
+    )
     if chart.in_control is None:
-        return f"{said}: no figure came after them."
+        return worded("{limits}: no figure came after them.", limits=said)
     why = [
-        *(["beyond the limits"] if chart.beyond else []),
-        *(["the average has left the mean"] if chart.drifted else []),
+        *([worded("beyond the limits")] if chart.beyond else []),
+        *([worded("the average has left the mean")] if chart.drifted else []),
     ]
-    verdict = f"the newest is out of control ({'; '.join(why)})" if why else "the newest is in control"
+    verdict = (
+        worded("the newest is out of control ({why})", why=one_by_one(why))
+        if why
+        else worded("the newest is in control")
+    )
     earlier = sum(int(k) < chart.new - 1 for k in limits.outside)
-    told = [f"{earlier} earlier outside"] if earlier else []
+    told = [worded("{count} earlier outside", count=earlier)] if earlier else []
     told += [run.words for run in (chart.rows.ending(chart.new - 1) if chart.rows else ())]
-    besides = f"; told besides: {', '.join(told)}" if told else ""
-    return f"{said}: {verdict}{besides}."
+    if not told:
+        return worded("{limits}: {verdict}.", limits=said, verdict=verdict)
+    return worded("{limits}: {verdict}; told besides: {told}.", limits=said, verdict=verdict, told=listed(told))

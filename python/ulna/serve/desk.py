@@ -10,7 +10,9 @@ from pathlib import Path
 
 from ulna.formats.output import write_file
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.serve.contract.files import FileInfo, FileKind
+from ulna.serve.contract.model import shortened
 from ulna.serve.problems import NotThereError
 from ulna.serve.what import what_is
 
@@ -65,7 +67,9 @@ class Desk:
     def take(self, path: Path) -> FileInfo:
         """A file of a session's folder, as it is now. Raises UlnaInputError where it is not there."""
         if not path.is_file():
-            raise UlnaInputError(f"{path.name}: it is not there; expected a file that was just written. Look for it.")
+            raise UlnaInputError(
+                worded("{file}: it is not there; expected a file that was just written. Look for it.", file=path.name)
+            )
         return self._keep(path)
 
     def path(self, digest: str) -> Path:
@@ -73,9 +77,11 @@ class Desk:
         with self._lock:
             kept = self._kept.get(digest)
         if kept is None or not kept.path.is_file():
-            raise NotThereError(f"file {digest[:12]}…: it is not on this desk. Bring it once more.")
+            raise NotThereError(worded("file {hash}…: it is not on this desk. Bring it once more.", hash=digest[:12]))
         if kept.info.size != kept.path.stat().st_size or _digest(kept.path) != digest:
-            raise NotThereError(f"{kept.info.name}: it was changed since it came. Bring it once more.")
+            raise NotThereError(
+                worded("{file}: it was changed since it came. Bring it once more.", file=kept.info.name)
+            )
         return kept.path
 
     def brought(self, path: Path) -> bool:
@@ -104,7 +110,7 @@ class Desk:
         digest, stat = _digest(path), path.stat()
         kind, what = what_is(path)
         at = datetime.fromtimestamp(stat.st_mtime, UTC).isoformat(timespec="seconds")
-        info = FileInfo(sha256=digest, name=path.name, size=stat.st_size, kind=kind, what=what[:4000], at=at)
+        info = FileInfo(sha256=digest, name=path.name, size=stat.st_size, kind=kind, what=shortened(what), at=at)
         with self._lock:
             self._kept.setdefault(digest, _Kept(path, info))
             if not self._kept[digest].path.exists():

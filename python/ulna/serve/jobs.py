@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Literal
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.serve.contract import jobs as wire
 from ulna.serve.contract.files import FileInfo
 from ulna.serve.contract.live import JobEvent
-from ulna.serve.contract.model import Problem
+from ulna.serve.contract.model import Problem, shortened
 from ulna.serve.hub import Hub
 from ulna.serve.problems import FAULT, NotThereError, problem, status_of, without_places
 
@@ -74,7 +75,7 @@ class _Job:
             done=self.done,
             total=self.total,
             made=list(self.made),
-            said=[said[:4000] for said in self.sentences],
+            said=[shortened(said) for said in self.sentences],
             problem=self.problem,
         )
 
@@ -159,9 +160,14 @@ class Jobs:
         except CancelledError:
             job.state = "cancelled"
         except UlnaInputError as error:
-            job.state, job.problem = "failed", problem(status_of(error), str(error))
+            job.state, job.problem = "failed", problem(status_of(error), kept(error))
         except Exception as error:  # a fault of ours is told, and the next job is done all the same
-            job.state, job.problem = "failed", problem(500, f"{FAULT} ({type(error).__name__}: {error})")
+            job.state, job.problem = (
+                "failed",
+                problem(
+                    500, worded("{fault} ({kind}: {what})", fault=FAULT, kind=type(error).__name__, what=str(error))
+                ),
+            )
         self._tell(job)
 
     def _tell(self, job: _Job) -> None:

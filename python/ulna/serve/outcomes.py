@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ulna.checking.advice import steps
+from ulna.checking.history import REMARKS
+from ulna.checking.outcome import BROKEN
 from ulna.checking.result_file import CheckedTable, load_check
+from ulna.checking.series import SIGNALS
+from ulna.control.basis import SAID
+from ulna.ground.worded import recalled
 from ulna.serve.contract import outcomes as wire
 from ulna.serve.texts import valued
+from ulna.verification.departures import FIGURES, FORMULAS, SENTENCES, said_of, said_of_check
 from ulna.verification.result_file import FigureTable, load_verification
+
+WHYS = (*SIGNALS, BROKEN)
 
 
 def checked(sha256: str, path: Path) -> wire.CheckOutcome:
@@ -22,11 +31,17 @@ def checked(sha256: str, path: Path) -> wire.CheckOutcome:
         verdict=found.verdict,
         in_control=found.in_control,
         figures=[_checked(each) for each in found.figures],
-        departures=found.departures,
+        departures=[said_of_check(each) for each in found.departures],
         advice=[
-            wire.Advised(test=each.test, figures=each.figures, why=each.why, steps=each.steps) for each in found.advice
+            wire.Advised(
+                test=each.test,
+                figures=each.figures,
+                why=[recalled(why, WHYS) for why in each.why],
+                steps=[recalled(step, steps()) for step in each.steps],
+            )
+            for each in found.advice
         ],
-        remarks=found.provenance.warnings,
+        remarks=[recalled(each, (*REMARKS, *SENTENCES)) for each in found.provenance.warnings],
     )
 
 
@@ -35,19 +50,19 @@ def _checked(found: CheckedTable) -> wire.CheckedFigure:
     return wire.CheckedFigure(
         test=found.test,
         key=found.key,
-        name=found.name,
+        name=recalled(found.name, FIGURES),
         of=list(found.of.items()),
         value=valued(found.value, found.unit, found.u, found.expanded),
         limit=None if found.limit is None else valued(found.limit, found.unit),
         verdict=found.verdict,
-        why=found.why,
+        why=None if found.why is None else said_of(found.why),
         centre_mm=None if past is None else past.centre,
         lower_mm=None if past is None else past.lower,
         upper_mm=None if past is None else past.upper,
         average_mm=None if past is None else past.average,
         in_control=None if past is None else past.in_control,
-        signals=[] if past is None else [each.words for each in past.signals],
-        history=None if past is None else past.said,
+        signals=[] if past is None else [recalled(each.words, SIGNALS) for each in past.signals],
+        history=None if past is None else recalled(past.said, SAID),
     )
 
 
@@ -59,21 +74,21 @@ def verified(sha256: str, path: Path) -> wire.VerificationOutcome:
         arm=found.arm,
         profile=found.profile.name,
         standard=found.profile.standard,
-        statement=found.profile.statement,
-        decision=found.decision.text,
+        statement=said_of(found.profile.statement),
+        decision=said_of(found.decision.text),
         verdict=found.verdict,
         states=[
             wire.StateInfo(
                 state=state.state,
                 verdict=state.verdict,
-                departures=state.departures,
+                departures=[said_of(each) for each in state.departures],
                 tests=[
                     wire.TestedInfo(
                         test=each.name,
                         kind=each.kind,
                         readings=each.readings,
                         verdict=each.verdict,
-                        departures=each.departures,
+                        departures=[said_of(text) for text in each.departures],
                         figures=[_figure(figure) for figure in each.figures],
                     )
                     for each in state.tests
@@ -81,18 +96,18 @@ def verified(sha256: str, path: Path) -> wire.VerificationOutcome:
             )
             for state in found.states
         ],
-        remarks=found.provenance.warnings,
+        remarks=[recalled(each, (*REMARKS, *SENTENCES)) for each in found.provenance.warnings],
     )
 
 
 def _figure(found: FigureTable) -> wire.TestFigure:
     return wire.TestFigure(
         key=found.key,
-        name=found.name,
-        formula=found.formula,
+        name=recalled(found.name, FIGURES),
+        formula=recalled(found.formula, FORMULAS),
         value=valued(found.value, found.unit, found.u, found.expanded),
         limit=None if found.limit is None else valued(found.limit, found.unit),
         verdict=found.verdict,
-        why=found.why,
+        why=None if found.why is None else said_of(found.why),
         values=len(found.individual),
     )

@@ -17,6 +17,7 @@ from ulna.formats.models import check_kind, fill, fill_json
 from ulna.formats.toml import check_format, read_json
 from ulna.formats.units import Units
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.purpose import purpose_of
 from ulna.planning.making import Wanted, plan_toml
 from ulna.planning.result_file import WHAT, PlanResultFile
@@ -202,9 +203,17 @@ def _gains(found: PlanResultFile) -> list[wire.Gain]:
 def _sentences(found: PlanResultFile) -> list[str]:
     said = []
     if found.gain is not None:
-        said.append(f"The expected length uncertainty is {100 * found.gain:.0f} % less than by random choice.")
+        less = f"{100 * found.gain:.0f}"
+        said.append(worded("The expected length uncertainty is {less} % less than by random choice.", less=less))
     if found.trial is not None:
-        said.append(f"By {found.trial.runs} simulated calibrations it is {100 * found.trial.gain:.0f} % less.")
+        less = f"{100 * found.trial.gain:.0f}"
+        said.append(worded("By {runs} simulated calibrations it is {less} % less.", runs=found.trial.runs, less=less))
     if found.determined is not None and found.parameters is not None:
-        said.append(f"{found.determined} of {found.parameters} free parameters' directions are determined.")
+        said.append(
+            worded(
+                "{determined} of {all} free parameters' directions are determined.",
+                determined=found.determined,
+                all=found.parameters,
+            )
+        )
     return said

@@ -11,7 +11,8 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from ulna.ground.errors import UlnaInputError, for_people
-from ulna.serve.contract.model import Problem
+from ulna.ground.worded import Worded, kept, worded
+from ulna.serve.contract.model import Problem, Wording, shortened
 
 MEDIA = "application/problem+json"
 TITLES = {
@@ -26,7 +27,7 @@ TITLES = {
     429: "This was tried too often",
     500: "This is a fault of Ulna's",
 }
-FAULT = "This is a fault of Ulna's, please report it; nothing was written."
+FAULT = worded("This is a fault of Ulna's, please report it; nothing was written.")
 
 
 _PLACES = re.compile(r"(?<![\w.])/(?:[^:;,'()\n]*/)?(?:desk/[0-9a-f]{64}|jobs/[0-9a-f]{16}|sessions/[\w-]+)/")
@@ -59,12 +60,14 @@ class TooOftenError(UlnaInputError):
 
 def problem(status: int, detail: str) -> Problem:
     """One."""
-    said = for_people(without_places(detail))[:4000]
-    return Problem(title=TITLES.get(status, "This did not go"), status=status, detail=said)
+    said = shortened(for_people(without_places(detail)))
+    return Problem(title=TITLES.get(status, "This did not go"), status=status, detail=str(said), said=Wording.of(said))
 
 
 def without_places(text: str) -> str:
     """A message that names files as whoever brought them knows them."""
+    if isinstance(text, Worded):
+        return Worded(text.template, {name: without_places(value) for name, value in text.values.items()})
     return _PLACES.sub("", text)
 
 
@@ -101,7 +104,7 @@ def install(app: FastAPI) -> None:
 
 async def _said(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, UlnaInputError)
-    return answer(status_of(error), str(error))
+    return answer(status_of(error), kept(error))
 
 
 async def _wrong(_: Request, error: Exception) -> JSONResponse:
@@ -118,4 +121,4 @@ async def _refused(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _fault(_: Request, error: Exception) -> JSONResponse:
-    return answer(500, f"{FAULT} ({type(error).__name__})")
+    return answer(500, worded("{fault} ({kind})", fault=FAULT, kind=type(error).__name__))

@@ -5,15 +5,44 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from ulna.ground.worded import recalled, templates
 from ulna.records import advising, history, impact, trend
 from ulna.records.due import Due
 from ulna.records.records import Records
 from ulna.records.trend_words import chart_said
 from ulna.serve.contract import records as wire
+from ulna.serve.contract.model import shortened
 from ulna.serve.desk import Desk
 from ulna.serve.problems import NotThereError
 from ulna.serve.texts import valued
 
+WHATS = templates(
+    "registered",
+    "filed",
+    "happened",
+    "changed",
+    "certified",
+    "issued",
+    "set",
+    "interval",
+    "knock",
+    "repair",
+    "move",
+    "adjustment",
+    "firmware",
+    "quarantine",
+    "release",
+    "note",
+    "arm",
+    "calibration",
+    "check",
+    "verification",
+    "evaluation",
+    "cross-validation",
+    "file",
+    "rests on it",
+)
+"""What may have become of a thing, in a word."""
 DETAILS = ("part_of", "maker", "model", "serial", "firmware", "owner", "location", "remark")
 
 
@@ -51,7 +80,12 @@ def whole(records: Records, desk: Desk, name: str) -> wire.EquipmentWhole:
 def happening(found: history.Happening) -> wire.Happening:
     """One line of a history."""
     return wire.Happening(
-        number=found.seq, at=found.at, what=found.what, text=found.text[:4000], by=found.by, sha256=found.sha256
+        number=found.seq,
+        at=found.at,
+        what=recalled(found.what, WHATS),
+        text=shortened(found.text),
+        by=found.by,
+        sha256=found.sha256,
     )
 
 

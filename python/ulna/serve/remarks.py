@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ulna.ground.errors import InputWarning
+from ulna.ground.worded import kept
 
 _LOCK = threading.Lock()
 """Python keeps what becomes of warnings for all threads together: one at a time listens."""
@@ -22,4 +23,4 @@ def remarks() -> Iterator[list[str]]:
         try:
             yield said
         finally:
-            said += dict.fromkeys(str(each.message) for each in caught if issubclass(each.category, InputWarning))
+            said += dict.fromkeys(kept(each.message) for each in caught if isinstance(each.message, InputWarning))

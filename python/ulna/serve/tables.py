@@ -13,6 +13,7 @@ import polars as pl
 
 from ulna.calibration.identify import identify, not_determined
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import capital, kept, recalled, templates, worded
 from ulna.proposals.answers import Answers, Question, UnansweredError
 from ulna.proposals.columns import Column
 from ulna.proposals.propose import Opened, Proposal, opened
@@ -26,6 +27,29 @@ from ulna.serve.workshop import SESSIONS, Workshop
 from ulna.study.study import Study
 
 FIRST, MOST_BAD, LONGEST = 20, 20, 200
+
+ROLES = templates(
+    "angle",
+    "feature",
+    "standing",
+    "artefact",
+    "measurement",
+    "temperature",
+    "probe",
+    "measured",
+    "goal",
+    "aside",
+    "length",
+    "distance",
+    "bar",
+    "seat",
+    "points",
+    "sphere",
+    "plane",
+    "cylinder",
+    "orientation",
+)
+"""What a column may be, and what may be touched."""
 
 
 def looked(desk: Desk, asked: wire.StudyAsked) -> wire.Looked:
@@ -42,7 +66,7 @@ def looked(desk: Desk, asked: wire.StudyAsked) -> wire.Looked:
     except UnansweredError as error:
         questions = error.questions
     except UlnaInputError as error:
-        wrong = str(error)
+        wrong = kept(error)
     tables = [_table(desk, sha256, each, proposal) for sha256, each in zip(asked.files, seen, strict=True)]
     return wire.Looked(
         tables=tables,
@@ -143,7 +167,7 @@ def _table(desk: Desk, sha256: str, seen: Opened, proposal: Proposal | None) -> 
 
 def _column(seen: Opened, column: Column, taken: dict[str, tuple[str, str]]) -> wire.ColumnSeen:
     role, word = column.meaning.role, column.meaning.word
-    guess = "" if role is None else f"'{word or column.name}' says {role}"
+    guess = "" if role is None else worded("'{word}' says {role}", word=word or column.name, role=recalled(role, ROLES))
     ours, why = taken.get(column.name, (None, guess))
     empty = column.meaning.role == "angle" or (ours or "").startswith("q")  # elsewhere what is empty may be meant
     bad = [row for row in column.bad if empty or column.texts[row - 1]][:MOST_BAD] if column.numeric else []
@@ -161,7 +185,7 @@ def _column(seen: Opened, column: Column, taken: dict[str, tuple[str, str]]) -> 
 def _question(question: Question) -> wire.QuestionSaid:
     return wire.QuestionSaid(
         field=question.field,
-        asks=f"{question.asks[:1].upper()}{question.asks[1:]}?",
+        asks=capital(worded("{asks}?", asks=question.asks)),
         choices=list(question.choices),
         about=question.about,
         flag=question.flag,
@@ -177,7 +201,12 @@ def _proposal(proposal: Proposal) -> wire.ProposalSaid:
         signs_unknown=bool(proposal.arm.unknown_signs.any()),
         angle=proposal.angle,
         angle_why=proposal.angle_why,
-        artefacts=[f"{name}: {each.kind}, {each.stated}".removesuffix(", –") for name, each in stated.items()],
+        artefacts=[
+            worded("{name}: {kind}", name=name, kind=recalled(each.kind, ROLES))
+            if each.stated == "–"
+            else worded("{name}: {kind}, {size}", name=name, kind=recalled(each.kind, ROLES), size=each.stated)
+            for name, each in stated.items()
+        ],
         rows=sum(each.rows for each in proposal.every),
         remarks=list(dict.fromkeys(_remarks(proposal))),
     )

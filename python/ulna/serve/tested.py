@@ -7,6 +7,7 @@ from pathlib import Path
 from ulna.checking.check import check
 from ulna.checking.protocol import load_protocol
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.records.outcomes import Recording
 from ulna.serve.beside import together, usable, with_arm
 from ulna.serve.contract.jobs import BeginCheck, BeginVerify
@@ -45,7 +46,7 @@ def check_work(asked: BeginCheck, workshop: Workshop, folder: Path) -> Planned:
         found.save(folder / CHECK)
         return Made([("check", folder / CHECK)], said)
 
-    return f"check '{stated.file.name}'", work
+    return worded("check '{protocol}'", protocol=stated.file.name), work
 
 
 def verify_work(asked: BeginVerify, workshop: Workshop, folder: Path) -> Planned:
@@ -62,4 +63,4 @@ def verify_work(asked: BeginVerify, workshop: Workshop, folder: Path) -> Planned
             [("verification", folder / "verification" / FILE), ("table", folder / "verification" / TABLE)], said
         )
 
-    return f"test by {test.name}", work
+    return worded("test by {file}", file=test.name), work

@@ -9,6 +9,7 @@ from pathlib import Path
 from ulna.arm.given import as_arm
 from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.serve.contract.files import FileKind
 from ulna.serve.problems import without_places
 
@@ -34,12 +35,12 @@ TABLES = {
 
 def _arm(path: Path) -> str:
     arm = as_arm(path)
-    return f"arm '{arm.name}', {arm.n} joints"
+    return worded("arm '{arm}', {joints} joints", arm=arm.name, joints=arm.n)
 
 
 def _result(path: Path) -> str:
     arm = as_arm(path)
-    return f"calibrated arm '{arm.name}', {arm.n} joints"
+    return worded("calibrated arm '{arm}', {joints} joints", arm=arm.name, joints=arm.n)
 
 
 def _plain(words: str) -> Callable[[Path], str]:
@@ -49,22 +50,22 @@ def _plain(words: str) -> Callable[[Path], str]:
 KINDS: dict[str, tuple[FileKind, Callable[[Path], str]]] = {
     "ulna-arm": (FileKind.ARM, _arm),
     "ulna-result": (FileKind.RESULT, _result),
-    "ulna-plan": (FileKind.PLAN, _plain("a plan")),
-    "ulna-plan-result": (FileKind.PLANNED, _plain("what was planned")),
-    "ulna-study": (FileKind.STUDY, _plain("a study")),
-    "ulna-source": (FileKind.SOURCE, _plain("a source of readings")),
-    "ulna-protocol": (FileKind.PROTOCOL, _plain("the protocol of a check")),
-    "ulna-check": (FileKind.CHECK, _plain("what a check found")),
-    "ulna-verify": (FileKind.TEST, _plain("an acceptance test")),
-    "ulna-verification": (FileKind.VERIFICATION, _plain("what an acceptance test found")),
-    "ulna-profile": (FileKind.PROFILE, _plain("the profile of an acceptance test")),
-    "ulna-lab": (FileKind.LABORATORY, _plain("a laboratory")),
+    "ulna-plan": (FileKind.PLAN, _plain(worded("a plan"))),
+    "ulna-plan-result": (FileKind.PLANNED, _plain(worded("what was planned"))),
+    "ulna-study": (FileKind.STUDY, _plain(worded("a study"))),
+    "ulna-source": (FileKind.SOURCE, _plain(worded("a source of readings"))),
+    "ulna-protocol": (FileKind.PROTOCOL, _plain(worded("the protocol of a check"))),
+    "ulna-check": (FileKind.CHECK, _plain(worded("what a check found"))),
+    "ulna-verify": (FileKind.TEST, _plain(worded("an acceptance test"))),
+    "ulna-verification": (FileKind.VERIFICATION, _plain(worded("what an acceptance test found"))),
+    "ulna-profile": (FileKind.PROFILE, _plain(worded("the profile of an acceptance test"))),
+    "ulna-lab": (FileKind.LABORATORY, _plain(worded("a laboratory"))),
 }
 """Name of a format → what it is, and a few words about it."""
 OTHERS = {
-    ".urdf": "a drawing (URDF): for a study of readings, or ulna import urdf",
-    ".png": "a picture: for a laboratory's logo",
-    ".svg": "a picture: for a laboratory's logo",
+    ".urdf": worded("a drawing (URDF): for a study of readings, or ulna import urdf"),
+    ".png": worded("a picture: for a laboratory's logo"),
+    ".svg": worded("a picture: for a laboratory's logo"),
 }
 """Ending of files that are used with others → a few words."""
 
@@ -73,15 +74,15 @@ def what_is(path: Path) -> tuple[FileKind, str]:
     """What it is and a few words about it; of what cannot be used, why."""
     suffix = path.suffix.lower()
     if suffix in TABLES:
-        return FileKind.TABLE, "a table of readings"
+        return FileKind.TABLE, worded("a table of readings")
     try:
         kind = _format(path)
         if kind not in KINDS:
-            return FileKind.OTHER, OTHERS.get(suffix, "nothing that is known here")
+            return FileKind.OTHER, OTHERS.get(suffix, worded("nothing that is known here"))
         found, said = KINDS[kind]
         return found, said(path)
     except UlnaInputError as error:
-        return FileKind.OTHER, without_places(str(error))
+        return FileKind.OTHER, without_places(kept(error))
 
 
 def _format(path: Path) -> str:

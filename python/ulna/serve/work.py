@@ -15,6 +15,7 @@ from ulna.documents.write import NEEDS, write_report
 from ulna.formats.output import write_file
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.extras import need
+from ulna.ground.worded import worded
 from ulna.live.judging import judgement
 from ulna.planning.file import load_plan_spec
 from ulna.planning.folder import NEEDS_PICTURES, STUDY, TABLE, WORK_SHEET
@@ -33,6 +34,7 @@ from ulna.serve.contract.jobs import (
 from ulna.serve.issuing import ENDINGS
 from ulna.serve.jobs import Made, Planned, Progress
 from ulna.serve.remarks import remarks
+from ulna.serve.sayings import not_converged
 from ulna.serve.tested import check_work, verify_work
 from ulna.serve.workshop import Workshop
 from ulna.study.study import Study
@@ -47,10 +49,10 @@ def _calibrate(asked: BeginCalibrate, workshop: Workshop, folder: Path) -> Plann
         found = calibrate(loaded, progress)
         found.save(folder / "result")
         if not found.fit.converged:
-            said = [f"The fit did not converge ({found.fit.termination}): do not use these numbers.", *said]
+            said = [not_converged(found.fit.termination), *said]
         return Made([("result", folder / "result" / "result.json")], said)
 
-    return f"calibrate {study.name}", work
+    return worded("calibrate {file}", file=study.name), work
 
 
 def _report(asked: BeginReport, workshop: Workshop, folder: Path) -> Planned:
@@ -63,7 +65,7 @@ def _report(asked: BeginReport, workshop: Workshop, folder: Path) -> Planned:
         write_report(content, {"html": path}, asked.language, [result], False)
         return Made([("report", path)])
 
-    return f"report of {result.name}", work
+    return worded("report of {file}", file=result.name), work
 
 
 def _plan(asked: BeginPlan, workshop: Workshop, folder: Path) -> Planned:
@@ -82,7 +84,7 @@ def _plan(asked: BeginPlan, workshop: Workshop, folder: Path) -> Planned:
         names = {"planned": PLAN, "study": STUDY, "arm": ARM, "table": TABLE, "work-sheet": WORK_SHEET}
         return Made([(role, folder / name) for role, name in names.items()])
 
-    return f"plan {path.name}", work
+    return worded("plan {file}", file=path.name), work
 
 
 def _certificate(asked: BeginCertificate, workshop: Workshop, folder: Path) -> Planned:
@@ -102,7 +104,7 @@ def _certificate(asked: BeginCertificate, workshop: Workshop, folder: Path) -> P
         write_file(path, made)
         return Made([("certificate", path)])
 
-    return f"draft of a certificate of {result.name}", work
+    return worded("draft of a certificate of {file}", file=result.name), work
 
 
 WORKS: dict[type, Callable[[Any, Workshop, Path], Planned]] = {

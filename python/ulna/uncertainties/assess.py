@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ulna.arm.arm import Arm
+from ulna.arm.causes import said_of
 from ulna.arm.covariance import ParameterCovariance, root_of
 from ulna.arm.directions import worth_naming
 from ulna.calibration.recalibrations import recalibrated
@@ -19,6 +20,7 @@ from ulna.ground.digits import uncertainty as digits
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.shown import About, Shown, Table
 from ulna.ground.version import VERSION
+from ulna.ground.worded import worded
 from ulna.study.study import Study
 from ulna.uncertainties.constrained import Constrained, Shares
 from ulna.uncertainties.first_order import first_order
@@ -287,6 +289,12 @@ def not_determined(value: Value) -> str:
 
 def depends_on(what: str, direction: dict[str, Any]) -> str:
     """In a sentence, on which direction that the calibration left open something depends, why, and what would help."""
-    because, remedy = (direction[key].rstrip(".") for key in ("because", "remedy"))
+    because, remedy = (said_of(direction[key].rstrip(".")) for key in ("because", "remedy"))
     names = ", ".join(worth_naming(direction["combination"]))
-    return f"{what} depends on {names}, which the calibration left open. Why: {because}. Remedy: {remedy}."
+    return worded(
+        "{what} depends on {names}, which the calibration left open. Why: {because}. Remedy: {remedy}.",
+        what=what,
+        names=names,
+        because=because,
+        remedy=remedy,
+    )

@@ -10,6 +10,7 @@ from ulna.arm.arm import Arm
 from ulna.arm.directions import drawn, steps
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.uncertainties.gum import propagate
 from ulna.uncertainties.task import Task
 
@@ -55,8 +56,11 @@ def first_order(arm: Arm, task: Task) -> FirstOrder:
     tips_mm = task.tips_mm(arm, task.q_rad)
     if task.touched.kind == "length" and task.touched.values(tips_mm[None])[0, 0] < NOTHING_MM:
         raise UlnaInputError(
-            f"{task.label}: A and B are in the same place; expected two places, a length of nothing has no direction. "
-            "Correct the readings."
+            worded(
+                "{of}: A and B are in the same place; expected two places, a length of nothing has no direction. "
+                "Correct the readings.",
+                of=task.label,
+            )
         )
     gradient = gradient_of(task, tips_mm)
     by_parameter = np.einsum("mnj,njp->mp", gradient, arm.jacobian(task.q_rad, task.probe, **task.said()))
@@ -109,8 +113,13 @@ def gradient_of(task: Task, tips_mm: F64) -> F64:
         largest = np.inf
     if not largest < LARGEST:
         raise UlnaInputError(
-            f"{task.label}: the touches hardly say what is asked, a {task.touched.kind}: 1 µm at one of them changes "
-            f"it by more than {LARGEST / 1000:g} mm. Expected touches that are spread over it; spread them."
+            worded(
+                "{of}: the touches hardly say what is asked, a {kind}: 1 µm at one of them changes it by more than "
+                "{largest} mm. Expected touches that are spread over it; spread them.",
+                of=task.label,
+                kind=task.touched.kind,
+                largest=f"{LARGEST / 1000:g}",
+            )
         )
     return gradient
 

@@ -10,8 +10,10 @@ from typing import TypeVar
 import numpy as np
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import listed, recalled, worded
 from ulna.verification.budget import Budget, Surroundings
 from ulna.verification.certified import BallTable, CalibratedLengthTable, CertifiedTable
+from ulna.verification.departures import COUNTED, COUNTED_EACH, COUNTED_SOME, COUNTS, EACH, WITHIN
 from ulna.verification.figures.figure import Definition
 from ulna.verification.outcome import Single
 from ulna.verification.touches import Touches
@@ -136,7 +138,9 @@ def tip_mm(touches: Touches, path: Path, test: str) -> float:
 
 def counted(what: str, found: int, expected: int) -> list[str]:
     """A departure in words; [] where the count is that of the profile."""
-    return [] if found == expected else [f"{what}: {found}; the profile counts {expected}."]
+    if found == expected:
+        return []
+    return [worded(COUNTED, what=recalled(what, COUNTS), found=found, expected=expected)]
 
 
 def counted_each(what: str, found: Mapping[str, int], expected: int) -> list[str]:
@@ -144,9 +148,11 @@ def counted_each(what: str, found: Mapping[str, int], expected: int) -> list[str
     off = {name: count for name, count in found.items() if count != expected}
     if not off:
         return []
-    shown = ", ".join(f"{count} of {name}" for name, count in list(off.items())[:4])
-    more = f", … ({len(off)} in all)" if len(off) > 4 else ""
-    return [f"{what}: {shown}{more}; the profile counts {expected} of each."]
+    shown = listed([worded(EACH, count=count, name=name) for name, count in list(off.items())[:4]])
+    of = recalled(what, COUNTS)
+    if len(off) > 4:
+        return [worded(COUNTED_SOME, what=of, found=shown, count=len(off), expected=expected)]
+    return [worded(COUNTED_EACH, what=of, found=shown, expected=expected)]
 
 
 def within_shares(
@@ -159,8 +165,15 @@ def within_shares(
         share = length_mm / (0.5 * range_mm)
         if not least <= share <= most:
             departures.append(
-                f"{what} {name}: {length_mm:.1f} mm, {100 * share:.0f} % of the reach (half the range); the profile "
-                f"asks for {100 * least:g} to {100 * most:g} %."
+                worded(
+                    WITHIN,
+                    what=recalled(what, COUNTS),
+                    name=name,
+                    length=f"{length_mm:.1f}",
+                    share=f"{100 * share:.0f}",
+                    least=f"{100 * least:g}",
+                    most=f"{100 * most:g}",
+                )
             )
     return departures
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from ulna.ground.worded import worded
+from ulna.verification.departures import DECISION, GUARD_2017, GUARD_RU, GUARD_SIMPLE, GUARD_U, NO_LIMIT, NO_UNCERTAINTY
 from ulna.verification.limits import Rule
 
 Verdict = Literal["pass", "fail", "undecided"]
 
-NO_LIMIT = "no limit stated"
-NO_UNCERTAINTY = "no uncertainty of the test value stated"
 
 FACTOR_2017 = 1.65
 """Of u: 95 % probability of conformity at the limit of acceptance, one-sided, as ISO 14253-1:2017 has it."""
@@ -41,15 +41,12 @@ class DecisionRule:
         """In words, for reports."""
         r = f"{self.part_of_expanded:.3g}"
         guard = {
-            "1.65u": f"g = {FACTOR_2017} u (ISO 14253-1:2017, 95 % probability of conformity; w = r U with r = {r})",
-            "U": f"g = w = U = {self.k:g} u (as older editions of ISO 14253-1 have it)",
-            "rU": f"g = w = r U with r = {r}, U = {self.k:g} u",
-            "simple": "g = w = 0 (simple acceptance, no guard band)",
+            "1.65u": worded(GUARD_2017, factor=str(FACTOR_2017), r=r),
+            "U": worded(GUARD_U, k=f"{self.k:g}"),
+            "rU": worded(GUARD_RU, r=r, k=f"{self.k:g}"),
+            "simple": worded(GUARD_SIMPLE),
         }[self.rule]
-        return (
-            f"Pass where |value| ≤ limit - g, fail where |value| > limit + g, else undecided; {guard}. u is the "
-            "standard uncertainty of the test value, not of the arm."
-        )
+        return worded(DECISION, guard=guard)
 
     def guard_mm(self, u_mm: float | None) -> float | None:
         """The guard band; None where it needs an uncertainty that is not known."""

@@ -16,7 +16,9 @@ from ulna.ground.arrays import Progress
 from ulna.ground.errors import InputWarning, UlnaInputError, nearest
 from ulna.ground.extras import need
 from ulna.ground.shown import About, Shown, Table
+from ulna.ground.worded import worded
 from ulna.verification.decision import DecisionRule, Limit, Verdict, worst_verdict
+from ulna.verification.departures import NOT_MEASURED
 from ulna.verification.figures.figure import Definition
 from ulna.verification.file import VerifyPlan, load_verify
 from ulna.verification.kinds.registry import kind_of
@@ -162,7 +164,7 @@ def _state(
         kind = kind_of(table.kind)
         if name not in parts:
             figures = ", ".join(figure.key for figure in kind.figures(table))
-            departures.append(f"test '{name}' ({figures}) was not measured.")
+            departures.append(worded(NOT_MEASURED, test=name, figures=figures))
             continue
         found = kind.evaluated(name, table, parts[name], bench)
         judged = []

@@ -16,6 +16,7 @@ from ulna.formats.header import Header
 from ulna.formats.layout import Layout
 from ulna.formats.tables.heads import COMMENTS, Grid, Head, find_head, is_blank, is_number, text_of
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 
 DITTO = ('"', "''", "〃", "״", '-"-', "dito", "ditto", "do.", "″", "”", "“", "同上")
 """What means "as above" in a cell."""
@@ -99,14 +100,16 @@ def lay_out(
             used.append(k)
     last = _words_at_the_end(grid, used)
     for k in last:
-        remarks.append(f"{line_name(lines[k])} is no reading and not read: '{_only(grid[k])[:60]}'.")
+        said = {"line": line_name(lines[k]), "text": _only(grid[k])[:60]}
+        remarks.append(worded("{line} is no reading and not read: '{text}'.", **said))
     used = used[: len(used) - len(last)]
     blank = [line for line in blank if used and line < lines[used[-1]]]
-    remarks += [
-        f"{what} passed over: {_named(found, line_name)}."
-        for found, what in ((blank, "blank rows are"), (comments, "comments among the readings are"))
-        if found
-    ]
+    if blank:
+        remarks.append(worded("blank rows are passed over: {lines}.", lines=_named(blank, line_name)))
+    if comments:
+        remarks.append(
+            worded("comments among the readings are passed over: {lines}.", lines=_named(comments, line_name))
+        )
     data, places = [grid[k] for k in used], [lines[k] for k in used]
     names, columns = _columns(path, data, places, head, cell_name, remarks, ragged)
     laid = Laid(
@@ -178,7 +181,11 @@ def _columns(
                 "which row the names are."
             )
         remarks.append(
-            f"the column of {where} has no name; what stands in it is not read: '{text_of(data[at][k])[:40]}'."
+            worded(
+                "the column of {cell} has no name; what stands in it is not read: '{text}'.",
+                cell=where,
+                text=text_of(data[at][k])[:40],
+            )
         )
     return [names[k] for k in places], places
 

@@ -13,6 +13,7 @@ from typing import Any
 from ulna.formats.layout import Layout
 from ulna.formats.spelling import looks_numeric
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 Grid = list[list[Any]]
 
@@ -126,9 +127,17 @@ def _below(grid: Grid, lines: Sequence[int], layout: Layout, place: Callable[[in
     above = [text_of(next(cell for cell in each if not is_blank(cell))) for each in grid[:row] if _filled(each)]
     if above and not told:
         shown = "; ".join(f"'{text[:_SHOWN]}'" for text in above[:3]) + ("; …" if len(above) > 3 else "")
-        head.remarks.append(f"the columns are named in {place(lines[row])}; what stands above is not read: {shown}.")
+        head.remarks.append(
+            worded(
+                "the columns are named in {line}; what stands above is not read: {text}.",
+                line=place(lines[row]),
+                text=shown,
+            )
+        )
     if commented:
-        head.remarks.append(f"{place(lines[row])} is read as the header, without the comment sign before it.")
+        head.remarks.append(
+            worded("{line} is read as the header, without the comment sign before it.", line=place(lines[row]))
+        )
     after = next((k for k in range(row + 1, len(grid)) if _filled(grid[k])), None)
     if after is None or layout.units_row is False:
         return head
@@ -139,5 +148,7 @@ def _below(grid: Grid, lines: Sequence[int], layout: Layout, place: Callable[[in
         head.units = [text_of(cell).strip("[]()") for cell in grid[after]]
         if layout.units_row is None:
             shown = ", ".join(dict.fromkeys(unit for unit in head.units if unit))
-            head.remarks.append(f"{place(lines[after])} holds units ({shown[:_SHOWN]}), and no reading.")
+            head.remarks.append(
+                worded("{line} holds units ({units}), and no reading.", line=place(lines[after]), units=shown[:_SHOWN])
+            )
     return head

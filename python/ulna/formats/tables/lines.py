@@ -24,6 +24,7 @@ from ulna.formats.spelling import sexagesimal
 from ulna.formats.tables.grid import GridTable, lay_out
 from ulna.formats.tables.heads import Grid, is_blank
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 _KEYS = ("thousands", "encoding", "comment", "units_row", "fill_down")
 _CHUNK = 1 << 22
@@ -154,7 +155,8 @@ def open_lines(path: Path, what: str, layout: Layout) -> LineTable:
         shown = next(
             (f", such as '{cell.strip()[:24]}'" for cell in re.split(r"[,;\t\r\n|]", text) if not cell.isascii()), ""
         )
-        remarks.append(f"read as {encoding}{shown}; say {layout.say('encoding', '…')} where that is wrong.")
+        key, read = layout.say("encoding", "…"), f"{encoding}{shown}"
+        remarks.append(worded("read as {encoding}; say {key} where that is wrong.", encoding=read, key=key))
     text = _stripped(path, text, what, remarks)
     lines = re.split(r"\r\n|\r|\n", text)
     begin = 0
@@ -164,7 +166,7 @@ def open_lines(path: Path, what: str, layout: Layout) -> LineTable:
         begin = 1
         if separator is None:
             separator = said[1]
-            remarks.append(f"line 1 says that '{separator}' stands between columns.")
+            remarks.append(worded("line 1 says that '{separator}' stands between columns.", separator=separator))
         elif separator != said[1]:
             raise UlnaInputError(
                 f"{layout.key('separator')}: got '{separator}', but line 1 of {path} says '{lines[0].strip()}'; "
@@ -188,7 +190,7 @@ def open_lines(path: Path, what: str, layout: Layout) -> LineTable:
         places=laid.places,
         header_line=laid.header_line,
         units=laid.units,
-        remarks=[f"{path}: {remark}" for remark in [*remarks, *laid.remarks]],
+        remarks=[worded("{of}: {why}", of=str(path), why=remark) for remark in [*remarks, *laid.remarks]],
         layout=layout,
         separator=separator,
     )
@@ -200,7 +202,7 @@ def _stripped(path: Path, text: str, what: str, remarks: list[str]) -> str:
     blanks = re.match(r"[ \t]*", text[len(bare) :])
     bare += blanks[0] if blanks else ""  # tabs behind the last cell stand before empty ones
     if len(text) > len(bare) and any(sign in text[len(bare) :] for sign in "\x00\x1a"):
-        remarks.append("the signs behind the last line (Ctrl-Z, zeros) are not read.")
+        remarks.append(worded("the signs behind the last line (Ctrl-Z, zeros) are not read."))
     if "\x00" in bare:
         raise UlnaInputError(f"{path}: the file is binary; expected {what}.")
     return bare

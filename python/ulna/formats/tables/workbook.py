@@ -28,6 +28,7 @@ from ulna.formats.tables.marks import OLD_OFFICE
 from ulna.formats.tables.workbook_cell import address, far_cell, stored_cell
 from ulna.formats.tables.workbook_parts import check_parts
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 
 Cell = str | float | bool | datetime.date | datetime.time | datetime.timedelta
 
@@ -205,7 +206,7 @@ def _table(path: Path, sheet: CalamineSheet, grid: list[list[Any]], layout: Layo
         places=laid.places,
         header_line=laid.header_line,
         units=laid.units,
-        remarks=[f"{path}: {remark}" for remark in [*remarks, *laid.remarks]],
+        remarks=[worded("{of}: {why}", of=str(path), why=remark) for remark in [*remarks, *laid.remarks]],
         merged=merged,
     )
 

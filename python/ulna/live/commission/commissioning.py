@@ -13,9 +13,10 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.commission.counting import Known
 from ulna.live.commission.findings import Findings, FoundJoint, found_joint
-from ulna.live.commission.holding import Held, Holding, held
+from ulna.live.commission.holding import ROLES, Held, Holding, held
 from ulna.live.commission.posture import Posture
 from ulna.live.commission.standing import Stood, stood
 from ulna.live.commission.turning import MOVED_TURNS, Turned, Way, travels, turned, way
@@ -120,16 +121,26 @@ class Commissioning:
             return None
         kind, joint = self._steps[0]
         if kind == "hold":
-            return Step(kind, joint, f"Hold the arm still, or lay it down, for {self._hold_s:.0f} s.")
+            return Step(
+                kind,
+                joint,
+                worded("Hold the arm still, or lay it down, for {seconds} s.", seconds=f"{self._hold_s:.0f}"),
+            )
         if kind == "posture":
             assert self.posture is not None
-            said = "Bring the arm into this posture, by eye, and let it rest there:"
+            said = worded("Bring the arm into this posture, by eye, and let it rest there:")
             return Step(kind, joint, said, self.posture.words)
         assert joint is not None
         if kind == "turn":
-            said = f"Turn only joint {joint + 1} (from the base), to and fro, up to its stops. Then let it rest."
+            said = worded(
+                "Turn only joint {joint} (from the base), to and fro, up to its stops. Then let it rest.",
+                joint=joint + 1,
+            )
             return Step(kind, joint, said)
-        return Step(kind, joint, f"Turn only joint {joint + 1} {self._ways[joint]}, by some 30°, and leave it there.")
+        way = self._ways[joint]
+        assert way is not None
+        said = worded("Turn only joint {joint} {way}, by some 30°, and leave it there.", joint=joint + 1, way=way)
+        return Step(kind, joint, said)
 
     @property
     def left(self) -> int:
@@ -205,8 +216,12 @@ class Commissioning:
         if lacking or self.holding is None:
             which = ", ".join(str(k + 1) for k in lacking)
             raise UlnaInputError(
-                f"joint {which}: never turned, so that its channel is not known; expected every one of {self.joints} "
-                "joints. Nothing was written. Turn it, or say how many joints there are with --joints."
+                worded(
+                    "joint {joints}: never turned, so that its channel is not known; expected every one of {all} "
+                    "joints. Nothing was written. Turn it, or say how many joints there are with --joints.",
+                    joints=which,
+                    all=self.joints,
+                )
             )
         channels = {each.name: each for each in self.holding.channels}
         joints = tuple(self._joint(k, channels) for k in range(self.joints))
@@ -226,8 +241,10 @@ class Commissioning:
 
     def _unused(self, channel: Held) -> str:
         if channel.role != "channel":
-            return f"{channel.name} is a {channel.role}."
-        return f"{channel.name} {'never changed' if channel.constant else 'is no joint that was turned'}."
+            return worded("{name} is a {role}.", name=channel.name, role=ROLES[channel.role])
+        if channel.constant:
+            return worded("{name} never changed.", name=channel.name)
+        return worded("{name} is no joint that was turned.", name=channel.name)
 
     def _look(self) -> Found | None:
         kind, joint = self._steps[0]

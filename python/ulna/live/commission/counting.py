@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.ground.arrays import F64, Bool
+from ulna.ground.worded import worded
 from ulna.live.guessing import TURNS, unit_of
 from ulna.live.mapping import TURN
 
-STATED = "As it was stated."
+STATED = worded("As it was stated.")
 _FEW = 10
 """Small differences that are whole steps by chance: one in 10⁵ times, as each is with a chance of a fifth."""
 _LEAP = 0.8
@@ -128,11 +129,17 @@ class Known:
         if np.isfinite(self._seen[channel]):
             span = float(self._most[channel] - self._least[channel])
             counts, sold = counts_of(float(self._seen[channel]), span)
-            why = "by where it began again" if sold else "about, by where it began again: no usual encoder has so many"
+            why = (
+                worded("by where it began again")
+                if sold
+                else worded("about, by where it began again: no usual encoder has so many")
+            )
             if np.isfinite(stated) and stated != counts:
-                why += f"; {stated:g} was stated"
+                why = worded("{why}; {stated} was stated", why=why, stated=f"{stated:g}")
             return counts, why
-        return (stated, "as it was stated") if np.isfinite(stated) else (None, "it never began again")
+        if np.isfinite(stated):
+            return stated, worded("as it was stated")
+        return None, worded("it never began again")
 
     def unwrapped(self, raw: F64) -> F64:
         """(N, C) of a whole step, turns counted. A turn of counts that is not known is seen where they begin again."""

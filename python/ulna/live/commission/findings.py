@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.commission.counting import Known
 from ulna.live.commission.holding import Held, Holding
 from ulna.live.commission.turning import Turned
@@ -107,19 +108,26 @@ class Findings:
         each = list(counts) if isinstance(counts, Sequence) else [counts] * len(self.joints)
         joints = list(self.joints)
         for k in self.uncounted:
-            joints[k] = replace(joints[k], counts_per_turn=each[k], counts_why="as it was stated")
+            joints[k] = replace(joints[k], counts_per_turn=each[k], counts_why=worded("as it was stated"))
         return replace(self, joints=tuple(joints))
 
     def check(self) -> None:
         """Whether all is known that files need. Raises UlnaInputError."""
         if self.unit is None:
-            raise UlnaInputError(f"the unit of the channels is not known ({self.unit_why}) Say it with --unit.")
+            raise UlnaInputError(
+                worded("the unit of the channels is not known ({why}) Say it with --unit.", why=self.unit_why)
+            )
         if self.uncounted:
             which = ", ".join(str(k + 1) for k in self.uncounted)
-            perhaps = f" (perhaps {self.guessed_counts:.0f})" if self.guessed_counts else ""
+            guessed = self.guessed_counts
+            perhaps = worded(" (perhaps {counts})", counts=f"{guessed:.0f}") if guessed else ""
             raise UlnaInputError(
-                f"joint {which}: counts per turn are not known{perhaps}: the encoder never began again. Nothing was "
-                "written. Say them with --counts-per-turn."
+                worded(
+                    "joint {joints}: counts per turn are not known{perhaps}: the encoder never began again. Nothing "
+                    "was written. Say them with --counts-per-turn.",
+                    joints=which,
+                    perhaps=perhaps,
+                )
             )
 
     def rad(self, joint: int, value: float) -> float:
@@ -162,10 +170,10 @@ class Findings:
     def zeros(self) -> str:
         """What is known of the zeros, in words."""
         if self.as_drawn:
-            return "Zero offsets (theta0) are those of the drawing, as was said"
+            return worded("Zero offsets (theta0) are those of the drawing, as was said")
         if self.zeroed:
-            return "Zero offsets (theta0) are by eye, to some degrees: a calibration finds the rest"
-        return "Zero offsets (theta0) are not known: a calibration has to search for them"
+            return worded("Zero offsets (theta0) are by eye, to some degrees: a calibration finds the rest")
+        return worded("Zero offsets (theta0) are not known: a calibration has to search for them")
 
     @property
     def remarks(self) -> list[str]:

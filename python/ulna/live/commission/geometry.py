@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.registry import device_arm
 from ulna.live.source_file import read_source
 from ulna.proposals.answers import Answers
@@ -50,8 +51,8 @@ def ways(drawn: Drawn, source: str) -> list[str | None]:
 
     source: what draws the arm, by name.
     """
-    upright = "anticlockwise, seen from above"
+    upright = worded("anticlockwise, seen from {side}", side=worded("above"))
     if drawn.guessed:
         return [upright, *[None] * (drawn.arm.n - 1)]
-    seen = f"anticlockwise, seen from the end of its z axis as {source} draws it"
-    return [f"{seen} (from above, if the arm stands upright)", *[seen] * (drawn.arm.n - 1)]
+    seen = worded("anticlockwise, seen from the end of its z axis as {source} draws it", source=source)
+    return [worded("{seen} (from above, if the arm stands upright)", seen=seen), *[seen] * (drawn.arm.n - 1)]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import listed, worded
 from ulna.live.commission.counting import Known, step_of
 from ulna.live.guessing import role_of
 
@@ -18,6 +19,8 @@ _SLOW = 0.6
 """Of the scatter that is left in means over half a second: noise, also smoothed, has less; what moved has all of it."""
 _MOVED_TURNS = 0.3 / 360.0
 """Of a turn: whoever held it let go."""
+ROLES = {"clock": worded("clock"), "counter": worded("counter"), "button": worded("button")}
+"""What a channel may be that is no joint's."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +56,19 @@ class Holding:
         if self.why_not is not None:
             return [self.why_not]
         others = [each for each in self.channels if each.role != "channel"]
-        lines = [f"{self.readings} readings in {self.seconds:.1f} s."]
-        return lines + [f"{each.name} is a {each.role}, not a joint: it is left out." for each in others]
+        lines = [worded("{count} readings in {time} s.", count=self.readings, time=f"{self.seconds:.1f}")]
+        return lines + [
+            worded("{name} is a {role}, not a joint: it is left out.", name=each.name, role=ROLES[each.role])
+            for each in others
+        ]
 
 
 def held(t_s: F64, raw: F64, known: Known) -> Holding:
     """(N,) times and (N, C) readings of an arm that was to be still."""
     n, seconds = len(raw), float(t_s[-1] - t_s[0]) if len(t_s) else 0.0
     if n < LEAST or seconds <= 0.0:
-        return Holding((), seconds, n, f"{n} readings in {seconds:.1f} s: too few to tell their noise.")
+        few = worded("{count} readings in {time} s: too few to tell their noise.", count=n, time=f"{seconds:.1f}")
+        return Holding((), seconds, n, few)
     known.see_wraps(raw)  # where it was held, an encoder may begin again with the noise
     turn = known.turn
     gone = known.unwrapped(raw)
@@ -71,8 +78,10 @@ def held(t_s: F64, raw: F64, known: Known) -> Holding:
         one, moved = _channel(name, "channel" if role == "button" else role, t_s - t_s[0], gone[:, k], float(turn[k]))
         found.append(one)
         if moved and one.role == "channel":
-            moving.append(f"{name} by {max(abs(one.drift), 2.0 * one.noise):.4g}")
-    why = f"It was not still: {', '.join(moving[:4])}. Hold it, or lay it down." if moving else None
+            by = f"{max(abs(one.drift), 2.0 * one.noise):.4g}"
+            moving.append(worded("{name} by {much}", name=name, much=by))
+    still = worded("It was not still: {which}. Hold it, or lay it down.", which=listed(moving[:4]))
+    why = still if moving else None
     return Holding(tuple(found), seconds, n, why)
 
 

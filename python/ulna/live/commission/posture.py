@@ -17,6 +17,7 @@ from ulna.arm.arm import Arm
 from ulna.arm.frames.bodies import bodies
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 RIGHT_ANGLES = (0.0, math.pi / 2, -math.pi / 2, math.pi)
 LEVER = 0.1
@@ -27,8 +28,17 @@ FREE = 0.1
 """Of the reach: links that come nearer to each other are in each other's way."""
 ALONG = math.cos(math.radians(10.0))
 """A direction this near to one of the six is called by its name alone."""
-_WORDS = (("forward", "back"), ("to the left", "to the right"), ("up", "down"))
-_SEEN = (("in front", "behind"), ("the left", "the right"), ("above", "below"))
+_WORDS = (
+    (worded("forward"), worded("back")),
+    (worded("to the left"), worded("to the right")),
+    (worded("up"), worded("down")),
+)
+_STRAIGHT = worded("straight up"), worded("straight down")
+_SEEN = (
+    (worded("in front"), worded("behind")),
+    (worded("the left"), worded("the right")),
+    (worded("above"), worded("below")),
+)
 
 
 @dataclass(frozen=True)
@@ -138,14 +148,16 @@ def _places(points: F64, reach_mm: float) -> list[list[int]]:
 
 def _name(own: Sequence[int], count: int) -> str:
     if own[-1] == count - 1:
-        return "the tip"
-    return f"joint {own[0] + 1}" if len(own) == 1 else f"joints {own[0] + 1}–{own[-1] + 1}"
+        return worded("the tip")
+    if len(own) == 1:
+        return worded("joint {joint}", joint=own[0] + 1)
+    return worded("joints {first}–{last}", first=own[0] + 1, last=own[-1] + 1)
 
 
 def _lying(points: F64, reach_mm: float) -> list[str]:
     places = _places(np.vstack([np.zeros(3), points]), reach_mm)
     count, lines = len(points), list[str]()
-    before, name = np.zeros(3), "the base"
+    before, name = np.zeros(3), worded("the base")
     for own in places:
         joints = [k - 1 for k in own if k > 0]
         if not joints:
@@ -153,7 +165,15 @@ def _lying(points: F64, reach_mm: float) -> list[str]:
         here = points[joints[-1]]
         step = here - before
         if np.linalg.norm(step) >= CLOSE * reach_mm:
-            lines.append(f"from {name} to {_name(joints, count)}: {np.linalg.norm(step):.0f} mm {direction(step)}")
+            lines.append(
+                worded(
+                    "from {one} to {other}: {far} mm {direction}",
+                    one=name,
+                    other=_name(joints, count),
+                    far=f"{np.linalg.norm(step):.0f}",
+                    direction=direction(step),
+                )
+            )
         before, name = here, _name(joints, count)
     return lines
 
@@ -161,9 +181,9 @@ def _lying(points: F64, reach_mm: float) -> list[str]:
 def _way(joint: int, points: F64, axes: F64, reach_mm: float) -> str:
     which, far = _lever(joint, points, axes)
     if far < LEVER * reach_mm:
-        return f"anticlockwise, seen from {seen_from(axes[joint])}"
+        return worded("anticlockwise, seen from {side}", side=seen_from(axes[joint]))
     goes = np.cross(axes[joint], points[which] - points[joint])
-    return f"so that {_name([which], len(points))} goes {direction(goes)}"
+    return worded("so that {what} goes {direction}", what=_name([which], len(points)), direction=direction(goes))
 
 
 def direction(step: F64) -> str:
@@ -172,11 +192,14 @@ def direction(step: F64) -> str:
     order = np.argsort(-np.abs(unit))
     names = [_WORDS[k][0 if unit[k] > 0 else 1] for k in order]
     if abs(unit[order[0]]) >= ALONG:
-        return f"straight {names[0]}" if order[0] == 2 else names[0]
+        return _STRAIGHT[0 if unit[2] > 0 else 1] if order[0] == 2 else names[0]
     if abs(unit[2]) >= 1.0 - ALONG:
         level = unit[:2] / max(float(np.linalg.norm(unit[:2])), 1e-12)
         above = math.degrees(math.asin(float(unit[2])))
-        return f"{_level(level)}, {abs(above):.0f}° {'above' if above > 0 else 'below'} level"
+        said = {"direction": _level(level), "degrees": f"{abs(above):.0f}"}
+        if above > 0:
+            return worded("{direction}, {degrees}° above level", **said)
+        return worded("{direction}, {degrees}° below level", **said)
     return _level(unit[:2])
 
 
@@ -186,7 +209,7 @@ def _level(unit: F64) -> str:
     if abs(unit[order[0]]) >= ALONG:
         return names[0]
     aside = math.degrees(math.asin(abs(float(unit[order[1]]))))
-    return f"{names[0]}, turned {aside:.0f}° {names[1]}"
+    return worded("{direction}, turned {degrees}° {aside}", direction=names[0], degrees=f"{aside:.0f}", aside=names[1])
 
 
 def seen_from(axis: F64) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import listed, worded
 from ulna.live.commission.counting import Known
 
 
@@ -25,7 +26,8 @@ class Stood:
         """What it came to, a sentence each."""
         if self.why_not is not None:
             return [self.why_not]
-        return [f"It reads {', '.join(f'{value:.6g} (joint {k})' for k, _, value in self.joints)}."]
+        each = [worded("{value} (joint {joint})", value=f"{value:.6g}", joint=k) for k, _, value in self.joints]
+        return [worded("It reads {each}.", each=listed(each))]
 
 
 def stood(raw: F64, known: Known, rest: int, channels: dict[int, str]) -> Stood:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.commission.counting import Known, Wrap, step_of, without_spikes, wraps_of
 from ulna.live.mapping import TURN
 
@@ -62,16 +63,31 @@ class Turned:
         if self.why_not is not None:
             return [self.why_not]
         lines = [
-            f"Joint {self.joint + 1} is channel {self.name}: it went from {self.low:.6g} to {self.high:.6g}, "
-            f"{360.0 * self.turns:.1f}°."
+            worded(
+                "Joint {joint} is channel {name}: it went from {low} to {high}, {degrees}°.",
+                joint=self.joint + 1,
+                name=self.name,
+                low=f"{self.low:.6g}",
+                high=f"{self.high:.6g}",
+                degrees=f"{360.0 * self.turns:.1f}",
+            )
         ]
         if self.wraps:
-            lines.append(f"Its encoder begins again ({self.wraps[0]}): {self.counts_why}.")
+            again, why = str(self.wraps[0]), self.counts_why
+            lines.append(worded("Its encoder begins again ({again}): {why}.", again=again, why=why))
         lines += [
-            f"{each.name} hangs on it: it turns by {each.ratio:.3g} of a turn with each of {self.name} (a coupling)."
+            worded(
+                "{other} hangs on it: it turns by {ratio} of a turn with each of {name} (a coupling).",
+                other=each.name,
+                ratio=f"{each.ratio:.3g}",
+                name=self.name,
+            )
             for each in self.along
         ]
-        lines += [f"{name} moved by {degrees:.1f}° meanwhile: it is not this joint." for name, degrees in self.touched]
+        lines += [
+            worded("{name} moved by {degrees}° meanwhile: it is not this joint.", name=name, degrees=f"{degrees:.1f}")
+            for name, degrees in self.touched
+        ]
         return lines
 
 
@@ -90,8 +106,10 @@ class Way:
         """What it came to, a sentence each."""
         if self.why_not is not None:
             return [self.why_not]
-        word = "rose" if self.sign > 0 else "fell"
-        return [f"{self.name} {word} by {self.degrees:.1f}°: sign = {self.sign} of joint {self.joint + 1}."]
+        said = {"name": self.name, "degrees": f"{self.degrees:.1f}", "joint": str(self.joint + 1)}
+        if self.sign > 0:
+            return [worded("{name} rose by {degrees}°: sign = 1 of joint {joint}.", **said)]
+        return [worded("{name} fell by {degrees}°: sign = -1 of joint {joint}.", **said)]
 
 
 def travels(raw: F64, known: Known) -> tuple[F64, F64]:
@@ -109,7 +127,8 @@ def turned(joint: int, raw: F64, known: Known, taken: Mapping[int, int]) -> Turn
     main = int(moved.argmax())
     name = known.names[main]
     if moved[main] < MOVED_TURNS:
-        return Turned(joint, why_not=f"Nothing moved: joint {joint + 1} was not turned, or its encoder says nothing.")
+        nothing = worded("Nothing moved: joint {joint} was not turned, or its encoder says nothing.", joint=joint + 1)
+        return Turned(joint, why_not=nothing)
     along, touched, apart = list[Along](), list[tuple[str, float]](), list[int]()
     turns = without_spikes(gone) / turn
     for k in np.flatnonzero(moved >= MOVED_TURNS):
@@ -123,22 +142,39 @@ def turned(joint: int, raw: F64, known: Known, taken: Mapping[int, int]) -> Turn
         else:
             apart.append(int(k))
     if apart:
-        also = " and ".join(f"{known.names[k]} by {360.0 * moved[k]:.1f}°" for k in apart[:3])
-        why = f"More than one joint was turned: {name} moved by {360.0 * moved[main]:.1f}°, {also}. Turn one alone."
+        also, *more = (
+            worded("{name} by {degrees}°", name=known.names[k], degrees=f"{360.0 * moved[k]:.1f}") for k in apart[:3]
+        )
+        for each in more:
+            also = worded("{one} and {other}", one=also, other=each)
+        why = worded(
+            "More than one joint was turned: {name} moved by {degrees}°, {also}. Turn one alone.",
+            name=name,
+            degrees=f"{360.0 * moved[main]:.1f}",
+            also=also,
+        )
         return Turned(joint, why_not=why)
     alike = [each.name for each in along if abs(each.ratio) > ALIKE]
     if alike:
-        why = (
-            f"{name} and {alike[0]} moved alike: which of them is joint {joint + 1} cannot be told. Name the channels "
-            "of joints alone in [map] channels of a source file."
+        why = worded(
+            "{name} and {other} moved alike: which of them is joint {joint} cannot be told. Name the channels of "
+            "joints alone in [map] channels of a source file.",
+            name=name,
+            other=alike[0],
+            joint=joint + 1,
         )
         return Turned(joint, why_not=why)
     if main in taken:
-        why = f"{name} moved, which is joint {taken[main] + 1} already. Turn joint {joint + 1} alone."
+        why = worded(
+            "{name} moved, which is joint {other} already. Turn joint {joint} alone.",
+            name=name,
+            other=taken[main] + 1,
+            joint=joint + 1,
+        )
         return Turned(joint, why_not=why)
     wraps = tuple(wraps_of(raw[:, main])[0])
     low, high = _ends(gone[:, main], raw[:, main], float(turn[main]), bool(wraps))
-    counts, why = known.counts(main)
+    counts, because = known.counts(main)
     counted = known.unit()[0] not in TURN and counts is not None
     return Turned(
         joint,
@@ -149,7 +185,9 @@ def turned(joint: int, raw: F64, known: Known, taken: Mapping[int, int]) -> Turn
         float(moved[main]),
         step_of(raw[:, main]),
         wraps,
-        f"{counts:g} counts a turn, {why}" if counted else "turns are counted",
+        worded("{counts} counts a turn, {why}", counts=f"{counts:g}", why=because)
+        if counted
+        else worded("turns are counted"),
         tuple(along),
         tuple(touched),
     )
@@ -163,20 +201,28 @@ def way(found: Turned, raw: F64, known: Known) -> Way:
     gone, moved = travels(raw, known)
     if moved[main] < MOVED_TURNS:
         most = int(moved.argmax())
-        what = f"{known.names[most]} moved, not {found.name}" if moved[most] >= MOVED_TURNS else "Nothing moved"
-        return Way(joint, why_not=f"{what}: joint {joint + 1} was not turned.")
+        other = {"name": known.names[most], "own": found.name}
+        what = worded("{name} moved, not {own}", **other) if moved[most] >= MOVED_TURNS else worded("Nothing moved")
+        return Way(joint, why_not=worded("{what}: joint {joint} was not turned.", what=what, joint=joint + 1))
     hanging = {each.name for each in found.along}
     others = [k for k, name in enumerate(known.names) if k != main and name not in hanging and moved[k] > moved[main]]
     if others:
-        return Way(
-            joint, why_not=f"{known.names[others[0]]} moved more than {found.name}. Turn joint {joint + 1} alone."
+        why = worded(
+            "{name} moved more than {own}. Turn joint {joint} alone.",
+            name=known.names[others[0]],
+            own=found.name,
+            joint=joint + 1,
         )
+        return Way(joint, why_not=why)
     values = without_spikes(gone)[:, main]
     net = float(values[-1] - values[0])
     if abs(net) < ONE_WAY * np.ptp(values):
-        return Way(
-            joint, why_not=f"{found.name} went both ways. Turn joint {joint + 1} in one direction, and leave it."
+        why = worded(
+            "{name} went both ways. Turn joint {joint} in one direction, and leave it.",
+            name=found.name,
+            joint=joint + 1,
         )
+        return Way(joint, why_not=why)
     return Way(joint, 1 if net > 0 else -1, found.name, 360.0 * abs(net) / float(known.turn[main]))
 
 

@@ -6,8 +6,11 @@ import math
 import struct
 from collections.abc import Callable
 
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import Row, Skipped
 from ulna.live.decode.fields import SECONDS
+
+NO_PACKET = worded("no packet")
 
 
 def _crc16(data: bytes, value: int, polynomial: int, reflected: bool) -> int:
@@ -89,7 +92,7 @@ class Packets:
                     found = max(at, len(data) - len(self._sync) + 1)
                     if at == found:
                         break
-                self.skipped.skip(data[at:found], "no packet", t_host_s)
+                self.skipped.skip(data[at:found], NO_PACKET, t_host_s)
                 at = found
                 if not data.startswith(self._sync, at):
                     break
@@ -100,7 +103,7 @@ class Packets:
             row = self._row(packet, t_host_s) if follows else None
             if row is None:
                 self._locked = False
-                self.skipped.skip(data[at : at + 1], "no packet", t_host_s)
+                self.skipped.skip(data[at : at + 1], NO_PACKET, t_host_s)
                 at += 1
             else:
                 self._locked = True
@@ -117,7 +120,7 @@ class Packets:
             packet = data[at : at + self._whole]
             row = self._row(packet, t_host_s) if len(packet) == self._whole else None
             if row is None:
-                self.skipped.skip(packet, "no packet", t_host_s)
+                self.skipped.skip(packet, NO_PACKET, t_host_s)
             else:
                 self.skipped.good()
                 rows.append(row)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
+from ulna.ground.worded import worded
 from ulna.live.faults import GARBAGE, Fault
 
 LONGEST_LINE = 4096
@@ -77,8 +78,12 @@ class Skipped:
     def _said(self) -> Fault:
         shown = self._first.decode("ascii", "backslashreplace").encode("unicode_escape").decode()
         more = "…" if self._run > len(self._first) else ""
-        many = "byte" if self._run == 1 else "bytes"
-        return Fault(GARBAGE, self._began_s, f"{self._run} {many} skipped, {self._why}: '{shown}{more}'.")
+        first = f"{shown}{more}"
+        if self._run == 1:
+            said = worded("1 byte skipped, {why}: '{first}'.", why=self._why, first=first)
+        else:
+            said = worded("{count} bytes skipped, {why}: '{first}'.", count=self._run, why=self._why, first=first)
+        return Fault(GARBAGE, self._began_s, said)
 
     def taken(self, end: bool = False) -> list[Fault]:
         """Faults since the last call; end: of the run that is not over, too."""

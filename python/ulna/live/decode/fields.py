@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+from ulna.ground.worded import kept, worded
 from ulna.live.decode.decoder import Row, Skipped, TooLong
 from ulna.live.decode.lines import Lines
 from ulna.live.samples import MOST_CHANNELS
@@ -55,7 +56,7 @@ class Fields:
             try:
                 row = self._row(line, t_host_s)
             except TooLong as error:
-                raise TooLong(str(error), rows) from None
+                raise TooLong(kept(error), rows) from None
             if row is not None:
                 self.skipped.good()
                 rows.append(row)
@@ -67,17 +68,17 @@ class Fields:
         try:
             text = line.decode("ascii").strip()
         except UnicodeDecodeError:
-            self.skipped.skip(line, "no text", t_host_s)
+            self.skipped.skip(line, worded("no text"), t_host_s)
             return None
         fields = ANY.split(text) if self._separator is None else text.split(self._separator)
         if self._prefix is not None:
             if fields[0].strip() != self._prefix:
-                self.skipped.skip(line, f"not a line of '{self._prefix}'", t_host_s)
+                self.skipped.skip(line, worded("not a line of '{prefix}'", prefix=self._prefix), t_host_s)
                 return None
             del fields[0]
         if self._names is None:
             if not all(_NUMBER.fullmatch(field.strip()) for field in fields):
-                self.skipped.skip(line, "no line of numbers", t_host_s)
+                self.skipped.skip(line, worded("no line of numbers"), t_host_s)
                 return None
             if len(fields) > MOST_CHANNELS:
                 raise TooLong(
@@ -90,14 +91,14 @@ class Fields:
     def _of(self, fields: list[str], line: bytes, t_host_s: float) -> Row | None:
         assert self._names is not None
         if len(fields) != len(self._names):
-            self.skipped.skip(line, f"not {len(self._names)} fields", t_host_s)
+            self.skipped.skip(line, worded("not {count} fields", count=len(self._names)), t_host_s)
             return None
         try:
             values = tuple(_number(fields[k]) for k in self._at)
             t_device_s = None if self._at_time is None else _number(fields[self._at_time]) * self._scale
             button = None if self._at_button is None else _number(fields[self._at_button]) != 0.0
         except ValueError:
-            self.skipped.skip(line, f"not {len(self._names)} numbers", t_host_s)
+            self.skipped.skip(line, worded("not {count} numbers", count=len(self._names)), t_host_s)
             return None
         return Row(t_host_s, t_device_s, values, button)
 

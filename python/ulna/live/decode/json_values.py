@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from ulna.ground.worded import kept, worded
 from ulna.live.decode.decoder import Row, Skipped, TooLong
 from ulna.live.decode.fields import SECONDS
 from ulna.live.decode.lines import Lines
@@ -50,7 +51,7 @@ class JsonValues:
             try:
                 row = self._row(json.loads(line), t_host_s)
             except TooLong as error:
-                raise TooLong(str(error), rows) from None
+                raise TooLong(kept(error), rows) from None
             except (ValueError, KeyError, IndexError, TypeError, RecursionError, OverflowError) as error:
                 self.skipped.skip(line, _why(error), t_host_s)
                 continue
@@ -69,7 +70,7 @@ class JsonValues:
             raise TooLong(f"a message has {len(numbers)} numbers; expected {MOST_CHANNELS} at most. Name fewer paths.")
         said = self._beside(document, self._joints)
         if said is not None and (not isinstance(said, list) or len(said) != len(numbers)):
-            raise ValueError(f"not as many names as numbers ({len(numbers)})")
+            raise ValueError(worded("not as many names as numbers ({count})", count=len(numbers)))
         if self.channels is None:
             if not numbers:
                 raise ValueError("no number in it")
@@ -78,7 +79,7 @@ class JsonValues:
             by_name = dict(zip(map(str, said), numbers, strict=True))
             numbers = [by_name[name] for name in self.channels]
         elif len(numbers) != len(self.channels):
-            raise ValueError(f"not {len(self.channels)} numbers")
+            raise ValueError(worded("not {count} numbers", count=len(self.channels)))
         return Row(t_host_s, self._seconds(document), tuple(numbers), self._down(document))
 
     def _seconds(self, document: Any) -> float | None:
@@ -112,13 +113,17 @@ def _finite(value: Any) -> float:
     if isinstance(value, bool):
         return float(value)
     if not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError("not a number where one should be")
+        raise ValueError(worded("not a number where one should be"))
     return float(value)
 
 
 def _why(error: Exception) -> str:
     if isinstance(error, json.JSONDecodeError | UnicodeDecodeError | RecursionError):
-        return "no JSON"
+        return worded("no JSON")
     if isinstance(error, KeyError | IndexError | TypeError):
-        return f"nothing at {error}" if isinstance(error, KeyError) else "no such path in it"
-    return str(error)
+        return (
+            worded("nothing at {path}", path=str(error))
+            if isinstance(error, KeyError)
+            else worded("no such path in it")
+        )
+    return kept(error)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import LONGEST_LINE, Skipped
 
 _END = re.compile(rb"[\r\n]+")
@@ -25,13 +26,15 @@ class Lines:
         self._left = parts.pop()
         if self._midway and parts:
             # a number that lost its first digits is a number still: what began before we listened is not read
-            self._skipped.skip(parts.pop(0), "the line had begun before", t_host_s)
+            self._skipped.skip(parts.pop(0), worded("the line had begun before"), t_host_s)
             self._midway = False
         for k, line in enumerate((*parts, self._left)):
             if len(line) > LONGEST_LINE:
-                self.too_long = (
-                    f"a line of more than {LONGEST_LINE} bytes, beginning with {line[:40]!r}; expected lines of "
-                    "readings. Check the speed (baud) and what the device sends."
+                self.too_long = worded(
+                    "a line of more than {most} bytes, beginning with {first}; expected lines of readings. Check the "
+                    "speed (baud) and what the device sends.",
+                    most=LONGEST_LINE,
+                    first=repr(line[:40]),
                 )
                 del parts[k:]
                 break

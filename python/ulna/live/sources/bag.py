@@ -11,6 +11,7 @@ from typing import Any
 
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import Row
 from ulna.live.faults import GARBAGE, Fault
 from ulna.live.samples import MOST_CHANNELS, Hello, Samples
@@ -59,7 +60,11 @@ class BagBlocks:
                 rows = []
         yield as_samples(rows, len(names))
         if skipped:
-            text = f"{skipped} messages skipped, in which not all joints are: {', '.join(names)[:80]}."
+            text = worded(
+                "{count} messages skipped, in which not all joints are: {names}.",
+                count=skipped,
+                names=", ".join(names)[:80],
+            )
             self.faults.append(Fault(GARBAGE, time.monotonic(), text))
 
 

@@ -10,6 +10,7 @@ from typing import Protocol
 
 from ulna.formats.toml import read_bytes
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import Row, TooLong
 from ulna.live.decode.fields import ANY, Fields
 from ulna.live.faults import ENDED, TOO_LONG, Fault
@@ -136,7 +137,7 @@ class FileSource:
         while not self._left:
             block = next(self._coming, None)
             if block is None:
-                why = f"{self.hello.device}: the end of the recording."
+                why = worded("{device}: the end of the recording.", device=self.hello.device)
                 self._faults.append(Fault(ENDED, time.monotonic(), why))
                 raise SourceEnded(why)
             if len(block):

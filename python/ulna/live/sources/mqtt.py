@@ -6,6 +6,7 @@ import threading
 from typing import Any
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
 from ulna.live.sources.mailbox import Mailbox
@@ -76,7 +77,7 @@ class MqttWire:
         self._ready.set()
 
     def _left(self, _client: Any, _data: Any, _flags: Any, reason: Any, _properties: Any) -> None:
-        self._gone = f"{self.device}: the broker is gone ({reason})."
+        self._gone = worded("{device}: the broker is gone ({why}).", device=self.device, why=str(reason))
         self._mailbox.wake()
 
     def _message(self, _client: Any, _data: Any, message: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.decode.decoder import Decoder
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
@@ -30,8 +31,12 @@ class SerialWire:
             )
         except (OSError, ValueError, serial.SerialException) as error:
             raise UlnaInputError(
-                f"serial:{path}: cannot be opened ({_said(error)}); expected a serial port. See which there are with: "
-                "ulna live ports"
+                worded(
+                    "serial:{port}: cannot be opened ({why}); expected a serial port. See which there are with: ulna "
+                    "live ports",
+                    port=path,
+                    why=_said(error),
+                )
             ) from None
 
     def receive(self) -> list[bytes]:
@@ -50,7 +55,11 @@ class SerialWire:
             raise self._gone(error) from None
 
     def _gone(self, error: Exception) -> SourceEnded:
-        return SourceEnded(f"{self.device}: the cable was pulled, or the device is off ({_said(error)}).")
+        return SourceEnded(
+            worded(
+                "{device}: the cable was pulled, or the device is off ({why}).", device=self.device, why=_said(error)
+            )
+        )
 
     def close(self) -> None:
         """As `Wire`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.source import SourceEnded
 from ulna.live.source_file import StatedSource
 from ulna.live.sources.wire import WireSource
@@ -23,8 +24,12 @@ class TcpWire:
             self._socket = socket.create_connection((host, port), timeout=5.0)
         except OSError as error:
             raise UlnaInputError(
-                f"{self.device}: nobody answers ({error.strerror or error}); expected a device that sends readings. "
-                "Check the address, and that it is on."
+                worded(
+                    "{device}: nobody answers ({why}); expected a device that sends readings. Check the address, and "
+                    "that it is on.",
+                    device=self.device,
+                    why=str(error.strerror or error),
+                )
             ) from None
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         self._socket.settimeout(0.1)
@@ -36,9 +41,10 @@ class TcpWire:
         except TimeoutError:
             return []
         except OSError as error:
-            raise SourceEnded(f"{self.device}: the connection broke ({error.strerror or error}).") from None
+            why = str(error.strerror or error)
+            raise SourceEnded(worded("{device}: the connection broke ({why}).", device=self.device, why=why)) from None
         if not found:
-            raise SourceEnded(f"{self.device}: the other side ended the connection.")
+            raise SourceEnded(worded("{device}: the other side ended the connection.", device=self.device))
         return [found]
 
     def close(self) -> None:

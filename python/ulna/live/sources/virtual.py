@@ -17,6 +17,7 @@ from ulna.arm.given import as_arm
 from ulna.formats.table import read_header, read_table
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.faults import ENDED, Fault
 from ulna.live.hand import ALL_WELL, Chances, Hand
 from ulna.live.mapping import TURN
@@ -67,7 +68,9 @@ class VirtualSource:
             )
         told = unit if unit != "counts" else None  # a device that sends counts does not say so
         self.arm = arm
-        self.hello = Hello(tuple(f"q{k + 1}" for k in range(arm.n)), told, f"virtual arm '{arm.name}'", rate_hz)
+        self.hello = Hello(
+            tuple(f"q{k + 1}" for k in range(arm.n)), told, worded("virtual arm '{arm}'", arm=arm.name), rate_hz
+        )
         self._turn: F64 = np.array([float(n or 0) if unit == "counts" else TURN[unit] for n in turns])
         self._counts = unit == "counts"
         self._rate_hz, self._speed, self._seconds = rate_hz, speed, seconds
@@ -132,7 +135,7 @@ class VirtualSource:
         """As `Source`."""
         n = self._due(timeout_s)
         if self._given >= self._seconds * self._rate_hz or self._closed:
-            raise self._ended("its time is over." if not self._closed else "it was closed.")
+            raise self._ended(worded("it was closed.") if self._closed else worded("its time is over."))
         n = int(min(n, self._seconds * self._rate_hz - self._given))
         t_s = (self._given + np.arange(n)) / self._rate_hz
         if not n:
@@ -142,7 +145,7 @@ class VirtualSource:
         try:
             q_rad, zero_rad, comes = self._hand.at(t_s)
         except StopIteration:
-            raise self._ended("the last posture was read.") from None
+            raise self._ended(worded("the last posture was read.")) from None
         self._given += n
         read = q_rad - zero_rad + self.noise_rad * self._noise.standard_normal(q_rad.shape)
         if comes.any():
@@ -164,7 +167,7 @@ class VirtualSource:
         return min(max(int((time.monotonic() - first_s) / each_s) + 1, 0), AT_ONCE)
 
     def _ended(self, why: str) -> SourceEnded:
-        said = f"{self.hello.device}: {why}"
+        said = worded("{device}: {why}", device=self.hello.device, why=why)
         self._faults.append(Fault(ENDED, time.monotonic(), said))
         return SourceEnded(said)
 

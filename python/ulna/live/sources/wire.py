@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.live.decode.decoder import Decoder, Row, TooLong
 from ulna.live.faults import ENDED, TOO_LONG, Fault
 from ulna.live.samples import MOST_CHANNELS, Hello, Samples
@@ -68,7 +69,7 @@ class WireSource:
             raise
 
     def _hear(self) -> None:
-        why = "it was closed."
+        why: str = worded("it was closed.")
         try:
             while not self._closed:
                 for piece in self._wire.receive():
@@ -76,11 +77,14 @@ class WireSource:
                     self._heard += len(piece)
                     self._came.set()
                 if self._heard - self._taken > MOST_WAITING:
-                    raise SourceEnded(f"{self._wire.device}: more than {MOST_WAITING >> 20} MB wait to be read.")
+                    many = MOST_WAITING >> 20
+                    raise SourceEnded(
+                        worded("{device}: more than {many} MB wait to be read.", device=self._wire.device, many=many)
+                    )
         except SourceEnded as ended:
-            why = str(ended)
+            why = kept(ended)
         except Exception as error:  # whatever a driver raises of a cable that is gone
-            why = f"{self._wire.device}: gone ({_reason(error)})."
+            why = worded("{device}: gone ({why}).", device=self._wire.device, why=_reason(error))
         if self._why is None:
             self._why = why
         self._came.set()
@@ -91,14 +95,22 @@ class WireSource:
             try:
                 self._take(max(min(until - time.monotonic(), 0.1), 0.0))
             except SourceEnded as ended:
-                raise UlnaInputError(f"{ended} No reading came before. Check the device.") from None
+                raise UlnaInputError(
+                    worded("{why} No reading came before. Check the device.", why=kept(ended))
+                ) from None
             if time.monotonic() > until and self._decoder.channels is None:
                 said = self._decoder.skipped
-                heard = f"; {said.bytes} bytes came that are none" if said.bytes else ""
-                shown = next((f": {fault.text}" for fault in said.taken(end=True)), "")
+                heard = worded("; {count} bytes came that are none", count=said.bytes) if said.bytes else ""
+                shown = next((worded(": {fault}", fault=fault.text) for fault in said.taken(end=True)), ".")
                 raise UlnaInputError(
-                    f"{self._wire.device}: no reading in {wait_s:g} s{heard}{shown or '.'} Expected lines of numbers, "
-                    "or what [decode] says. See what comes with: ulna live guess"
+                    worded(
+                        "{device}: no reading in {seconds} s{heard}{shown} Expected lines of numbers, or what [decode] "
+                        "says. See what comes with: ulna live guess",
+                        device=self._wire.device,
+                        seconds=f"{wait_s:g}",
+                        heard=heard,
+                        shown=shown,
+                    )
                 )
         if len(self._decoder.channels) > MOST_CHANNELS:
             raise UlnaInputError(
@@ -119,7 +131,7 @@ class WireSource:
                 self._rows += self._decoder.feed(piece, t_host_s, self._wire.messages)
             except TooLong as error:
                 self._rows += error.rows
-                self._why = f"{self._wire.device}: {error}"
+                self._why = worded("{device}: {why}", device=self._wire.device, why=kept(error))
                 self._faults.append(Fault(TOO_LONG, t_host_s, self._why))
                 self._end_said = True
                 self._pieces.clear()

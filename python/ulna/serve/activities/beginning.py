@@ -10,6 +10,7 @@ from typing import Any
 from ulna.arm.given import as_arm
 from ulna.formats.output import write_file
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.commission.commissioning import Commissioning as Work
 from ulna.live.commission.geometry import geometry, ways
 from ulna.live.commission.posture import posture
@@ -61,7 +62,7 @@ def _commission(asked: BeginCommission, stream: Stream, place: Place) -> Doing:
     path = None if asked.arm is None else place.desk.path(asked.arm)
     drawn = geometry(path, asked.joints, asked.reach_mm, None)
     zeros = asked.zeros or ("unknown" if drawn.guessed else "posture")
-    how = ways(drawn, "the device" if path is None else path.name)
+    how = ways(drawn, worded("the device") if path is None else path.name)
     stands = posture(drawn.arm, None) if zeros == "posture" else None
     hello, table = stream.source.hello, stream.stated.file.map
     work = Work(hello, drawn.arm.n, table, ways=how, posture=stands)
@@ -126,6 +127,6 @@ def begun(asked: Begin, stream: Stream, place: Place) -> Doing:
 def keep_asked(asked: Kept, place: Place, at: str) -> None:
     """How a session was asked for, so that it can go on after anything."""
     if not place.folder.is_dir():
-        raise UlnaInputError(f"{place.folder.name}: its folder is gone. Begin another session.")
+        raise UlnaInputError(worded("{session}: its folder is gone. Begin another session.", session=place.folder.name))
     text = asked.model_copy(update={"go_on": None}).model_dump_json(indent=2)
     write_file(place.folder / ABOUT, f'{{"begun": "{at}", "asked": {text}}}\n', force=True)

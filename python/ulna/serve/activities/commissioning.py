@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.commission.commissioning import Commissioning as Work
 from ulna.live.commission.commissioning import Found
 from ulna.live.commission.findings import FULL_TURN
@@ -57,7 +58,7 @@ class Commissioning(Doing):
         """What came; what was found is asked about."""
         for fault in frames.faults:
             if fault.kind == RESET:
-                raise UlnaInputError(f"{fault.text} Nothing was written. Begin again.")
+                raise UlnaInputError(worded("{what} Nothing was written. Begin again.", what=fault.text))
         for fault in frames.told:
             if fault.kind not in ORDINARY:
                 yield FaultEvent(kind=fault.kind, sentence=fault.text)
@@ -81,7 +82,7 @@ class Commissioning(Doing):
                 self._answer(asked.answer)
                 yield StateEvent(state=self.state())
                 if self._work.step is None:
-                    yield SaidEvent(sentence="All is found: end it, and the files are written.")
+                    yield SaidEvent(sentence=worded("All is found: end it, and the files are written."))
             case DoGo():
                 steer(virtual_of(self.stream.source), asked)
             case _:
@@ -90,7 +91,7 @@ class Commissioning(Doing):
     def _answer(self, answer: Answer) -> None:
         found = self._found
         if found is None or answer not in self._answers(found):
-            raise NotNowError("nothing is asked that this answers. Do what the step says.")
+            raise NotNowError(worded("nothing is asked that this answers. Do what the step says."))
         if answer == "endless":
             assert isinstance(found, Turned)
             self._work.endless.add(found.joint)
@@ -142,7 +143,7 @@ class Commissioning(Doing):
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """arm.toml, source.toml, plan.toml and noise.toml; nothing where a joint was not found."""
         if self._work.step is not None and not self._work.turned:
-            return [], ["Nothing was found: nothing is written."]
+            return [], [worded("Nothing was found: nothing is written.")]
         findings = self._work.findings()
         if self._counts is not None:
             findings = findings.with_counts(self._counts)

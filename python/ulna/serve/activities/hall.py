@@ -12,6 +12,7 @@ from typing import Annotated
 from pydantic import Field, TypeAdapter, ValidationError
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.ending import JOURNAL, RESULT, touches_in
 from ulna.records.bench import Bench
 from ulna.serve.activities.beginning import ABOUT, Kept, Place
@@ -68,7 +69,7 @@ class Hall:
         with self._lock:
             busy = next((each for each in self._activities.values() if each.running), None)
             if busy is not None:
-                raise NotNowError(f"'{busy.name}' is still going on. End it first.")
+                raise NotNowError(worded("'{session}' is still going on. End it first.", session=busy.name))
             place = Place(self._desk, self._bench, self._folder / name, who, self._allowed)
             running = Running(name, asked, place, self._hub)
             self._activities.pop(name, None)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import worded
 from ulna.live.faults import ORDINARY
 from ulna.live.features import FEATURES
 from ulna.live.figures import Figure
@@ -24,6 +25,15 @@ from ulna.serve.frames import Newest
 from ulna.serve.texts import valued
 
 POINTS = "points.csv"
+KINDS = {
+    "point": worded("point"),
+    "length": worded("length"),
+    "ball": worded("ball"),
+    "circle": worded("circle"),
+    "plane": worded("plane"),
+    "distance": worded("distance"),
+}
+"""What touches can be made into, in words."""
 
 
 class Measuring(Doing):
@@ -65,7 +75,10 @@ class Measuring(Doing):
                 notebook.current.kind = asked.kind
             case DoTakeBack():
                 point = notebook.take_back()
-                yield SaidEvent(sentence="There is no point." if point is None else f"{point.name} taken back.")
+                if point is None:
+                    yield SaidEvent(sentence=worded("There is no point."))
+                else:
+                    yield SaidEvent(sentence=worded("{point} taken back.", point=point.name))
             case DoTrust():
                 self.out.trust()
             case DoGo():
@@ -105,7 +118,7 @@ class Measuring(Doing):
     def finish(self) -> tuple[list[tuple[str, Path]], list[str]]:
         """The points as a table, where there are any."""
         if not self.out.notebook.points:
-            return [], ["No point was taken."]
+            return [], [worded("No point was taken.")]
         self._folder.mkdir(parents=True, exist_ok=True)
         path = self._folder / POINTS
         write_points(path, self.out.arm, self.out.notebook, False)
@@ -117,10 +130,15 @@ class Measuring(Doing):
                 self._tip = said
                 yield TipEvent(tip=tip_said(said))
             case Refused():
-                yield RefusedEvent(sentence=f"Not taken: {said.reason}.")
+                yield RefusedEvent(sentence=worded("Not taken: {reason}.", reason=said.reason))
             case Set():
                 yield SaidEvent(
-                    sentence=f"{said.point.name}: taken, part of {said.feature.name}, a {said.feature.kind}."
+                    sentence=worded(
+                        "{point}: taken, part of {feature}, a {kind}.",
+                        point=said.point.name,
+                        feature=said.feature.name,
+                        kind=KINDS[said.feature.kind],
+                    )
                 )
                 yield StateEvent(state=self.state())
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from urllib.parse import quote
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.registry import KINDS
 from ulna.live.source_file import StatedSource, read_source
 from ulna.serve.desk import Desk
@@ -25,14 +26,24 @@ def _stated(desk: Desk, given: str) -> StatedSource:
         stated = read_source(path)
         if desk.brought(path) and path.suffix.lower() == ".toml" and stated.url.scheme in OF_FILES and stated.url.path:
             raise UlnaInputError(
-                f"{path.name}: key 'url': names a file of this machine; expected a stream. Bring that file, and name "
-                "it as the source."
+                worded(
+                    "{file}: key 'url': names a file of this machine; expected a stream. Bring that file, and name it "
+                    "as the source.",
+                    file=path.name,
+                )
             )
         return stated
     if scheme.lower() not in OF_FILES:
         if scheme.lower() not in KINDS:
             known = ", ".join(KINDS)
-            raise UlnaInputError(f"source '{given[:80]}': got '{scheme[:20]}:'; expected one of {known}. Correct it.")
+            raise UlnaInputError(
+                worded(
+                    "source '{source}': got '{got}:'; expected one of {known}. Correct it.",
+                    source=given[:80],
+                    got=scheme[:20],
+                    known=known,
+                )
+            )
         return read_source(given)
     name, question, options = rest.partition("?")
     if options and "poses=" in options:

@@ -12,6 +12,7 @@ from contextlib import ExitStack
 from datetime import UTC, datetime
 
 from ulna.ground.errors import UlnaInputError, for_people
+from ulna.ground.worded import kept, worded
 from ulna.live.registry import open_source
 from ulna.live.rounds import Round
 from ulna.live.source import SourceEnded
@@ -22,17 +23,19 @@ from ulna.serve.activities.opened import stated_source
 from ulna.serve.contract import activities as wire
 from ulna.serve.contract.activities import Begin
 from ulna.serve.contract.live import EndedEvent, FaultEvent, LiveEvent, SaidEvent, StreamEvent
+from ulna.serve.contract.model import shortened
 from ulna.serve.contract.words import Do, DoEnd
 from ulna.serve.frames import packed
 from ulna.serve.hub import Hub
-from ulna.serve.problems import NotNowError
+from ulna.serve.problems import NotNowError, without_places
+from ulna.serve.sayings import fault
 
 FRAMES_HZ, STREAM_HZ = 60.0, 2.0
 READ_S = 0.5 / FRAMES_HZ
 WAIT_S = 60.0
 """How long whoever says something waits for the answer."""
 SENTENCES = 12
-FAULT = "This is a fault of Ulna's, please report it: "
+OVER = worded("it is over. Begin another.")
 
 
 class Running:
@@ -88,13 +91,13 @@ class Running:
 
     def _in_thread(self, work: Callable[[], wire.Activity]) -> wire.Activity:
         if not self.running:
-            raise NotNowError("it is over. Begin another.")
+            raise NotNowError(OVER)
         answer: Future[wire.Activity] = Future()
         self._words.put((work, answer))
         try:
             return answer.result(WAIT_S)
         except TimeoutError:
-            raise NotNowError("it did not answer. Try again.") from None
+            raise NotNowError(worded("it did not answer. Try again.")) from None
 
     # ------------------------------------------------------------ in its own thread
 
@@ -105,13 +108,13 @@ class Running:
                 if not self._interrupted:
                     self._finish()
         except UlnaInputError as error:
-            self._say(str(error))
+            self._say(kept(error))
         except Exception as error:  # nobody else would hear of it
-            self._say(f"{FAULT}{type(error).__name__}: {error}")
+            self._say(fault(error))
         finally:
             self.running = False
             while not self._words.empty():
-                self._words.get()[1].set_exception(NotNowError("it is over. Begin another."))
+                self._words.get()[1].set_exception(NotNowError(OVER))
             self._hub.tell(EndedEvent(activity=self._activity()), self.name)
 
     def _go(self) -> None:
@@ -121,7 +124,7 @@ class Running:
             try:
                 frames = self._stream.read(READ_S)
             except SourceEnded as end:
-                self._ended = str(end)
+                self._ended = kept(end)
                 frames = self._stream.ended(self._ended)
             self._round.take(frames)
             self._tell_all(self._doing.feed(frames))
@@ -163,7 +166,7 @@ class Running:
             self._hub.tell(event, self.name)
 
     def _say(self, sentence: str) -> None:
-        shown = for_people(sentence)[:4000]
+        shown = shortened(for_people(without_places(sentence)))
         self._said.append(shown)
         self._hub.tell(SaidEvent(sentence=shown), self.name)
 

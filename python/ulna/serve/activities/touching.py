@@ -10,6 +10,7 @@ import numpy as np
 from ulna.arm.arm import Arm
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.ending import JOURNAL, RESULT, write_result, write_study
 from ulna.live.events import Event, Happened, Meter
 from ulna.live.faults import ORDINARY, Fault
@@ -28,6 +29,7 @@ from ulna.serve.contract.live import FaultEvent, KnownEvent, LiveEvent, RefusedE
 from ulna.serve.contract.words import Do, DoFollow, DoGo, DoHoldOut, DoMoved, DoTouch, DoTrust, DoWithdraw
 from ulna.serve.frames import Newest
 from ulna.serve.problems import NotNowError
+from ulna.serve.sayings import not_converged
 
 TRIES = 20
 """Suggestions that a virtual hand may not reach, one after another."""
@@ -70,7 +72,7 @@ class Touching(Doing):
                 yield self._known()
             case DoWithdraw():
                 session.withdraw(asked.number, asked.reason)
-                yield SaidEvent(sentence=f"Touch {asked.number} does not count any more.")
+                yield SaidEvent(sentence=worded("Touch {number} does not count any more.", number=asked.number))
                 yield self._known()
                 yield StateEvent(state=self.state())
             case DoHoldOut():
@@ -80,7 +82,7 @@ class Touching(Doing):
                 yield self._known()
             case DoTrust():
                 session.trust()
-                yield SaidEvent(sentence="The angles are taken for right again.")
+                yield SaidEvent(sentence=worded("The angles are taken for right again."))
             case DoGo():
                 self._follows = False
                 steer(self.virtual, asked)
@@ -134,15 +136,16 @@ class Touching(Doing):
         if session.journal is not None:
             session.journal.close()
         if session.fit.fitted is None:
-            why = session.no_fit or "nothing was touched"
-            return [journal], [f"{len(session.fit.counting())} touches are too few for a fit ({why})."]
+            why = session.no_fit or worded("nothing was touched")
+            count = len(session.fit.counting())
+            return [journal], [worded("{count} touches are too few for a fit ({why}).", count=count, why=why)]
         study, said = write_study(session.fit, self._folder)
         result = write_result(study)
         left = [("study", study), ("arm", self._folder / "arm.toml"), ("result", study.parent / RESULT / "result.json")]
         if judge(result, study, self._begun) is not None:
             left.append(("evaluation", study.parent / FOLDER / FILE))
         if not result.fit.converged:
-            said = [f"The fit did not converge ({result.fit.termination}): do not use these numbers.", *said]
+            said = [not_converged(result.fit.termination), *said]
         return [*left, journal], said
 
     def _event(self, event: Event) -> Iterator[LiveEvent]:
@@ -151,7 +154,7 @@ class Touching(Doing):
                 if event.kind not in ORDINARY:
                     yield FaultEvent(kind=event.kind, sentence=event.text)
             case Refused():
-                yield RefusedEvent(sentence=f"Not taken: {event.reason}.")
+                yield RefusedEvent(sentence=worded("Not taken: {reason}.", reason=event.reason))
                 if self._follows:
                     yield self._known()
                     yield from self._play()
@@ -181,7 +184,9 @@ class Touching(Doing):
             self.session.guide.refused(self._meter.next)
             self.session.moved()
             yield self._known()
-        raise UlnaInputError("the virtual arm does not reach what it is to touch: nothing more is touched by itself.")
+        raise UlnaInputError(
+            worded("the virtual arm does not reach what it is to touch: nothing more is touched by itself.")
+        )
 
     def _reached(self) -> bool:
         meter = self._meter
@@ -194,7 +199,7 @@ class Touching(Doing):
 def virtual_of(source: object) -> VirtualSource:
     """Raises NotNowError for an arm that only a hand can move."""
     if not isinstance(source, VirtualSource):
-        raise NotNowError("this arm is no virtual one: move it with your hand.")
+        raise NotNowError(worded("this arm is no virtual one: move it with your hand."))
     return source
 
 

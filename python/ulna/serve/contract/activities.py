@@ -265,7 +265,7 @@ class Stream(Said):
 
     scheme: str
     """serial, tcp, virtual, …"""
-    device: str
+    device: Sentence
     channels: list[str]
     rate_hz: float
     silent_s: float

@@ -11,13 +11,13 @@ class CheckedFigure(Said):
     test: str
     key: str
     """Its short name."""
-    name: str
+    name: Sentence
     of: list[tuple[str, str]]
     """Labels of the measurement: ("artefact", "stick"), …"""
     value: Value
     limit: Value | None
     verdict: str | None
-    why: str | None
+    why: Sentence | None
     """Why there is no verdict."""
     centre_mm: float | None
     """Of its own history, as all that follows."""
@@ -61,12 +61,12 @@ class TestFigure(Said):
     """A figure of an acceptance test: its worst value."""
 
     key: str
-    name: str
-    formula: str
+    name: Sentence
+    formula: Sentence
     value: Value
     limit: Value | None
     verdict: str | None
-    why: str | None
+    why: Sentence | None
     values: int
     """Of so many."""
 

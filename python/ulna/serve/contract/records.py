@@ -66,7 +66,7 @@ class Equipment(Said):
     due_on: str | None
     due_days: int | None
     """Negative: overdue."""
-    due_why: str | None
+    due_why: Sentence | None
 
 
 class AllEquipment(Said):
@@ -81,7 +81,7 @@ class Happening(Said):
     number: int
     """Of the entry in the record's chain."""
     at: str
-    what: str
+    what: Sentence
     text: Sentence
     by: str
     sha256: Sha256 | None

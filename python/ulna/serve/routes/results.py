@@ -12,7 +12,9 @@ from ulna.documents.gather import gather
 from ulna.ground.errors import UlnaInputError
 from ulna.live.judging import judgement
 from ulna.serve.contract import results as wire
+from ulna.serve.contract.model import shortened
 from ulna.serve.routes.common import Digest, workshop
+from ulna.serve.sayings import ending
 from ulna.serve.sections import sections
 from ulna.serve.texts import length
 
@@ -30,7 +32,7 @@ def result(request: Request, sha256: Digest, language: Literal["en", "de", "zh"]
         sha256=sha256,
         arm=found.arm.name,
         converged=found.fit.converged,
-        ending=found.fit.termination[:4000],
+        ending=ending(shortened(found.fit.termination)),
         sections=sections(content, language),
         residuals=_residuals(found.residuals, path.name),
     )

@@ -11,6 +11,7 @@ from ulna.formats.numbers import Count
 from ulna.geometry.enclosing import enclosing_sphere
 from ulna.geometry.sphere import fit_sphere
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, called, counted, counted_each
 from ulna.verification.figures.iso_10360_12 import L_DIA
 from ulna.verification.kinds.kind import TestKind, TestTable
@@ -70,8 +71,8 @@ ARTICULATION = TestKind(
     growing=None,
     moved=False,
     length_errors=False,
-    again="Touch the ball again in every orientation of the probe.",
-    look="Look at the probe: tight, straight, its ball clean and unworn; an offset shows here first.",
+    again=worded("Touch the ball again in every orientation of the probe."),
+    look=worded("Look at the probe: tight, straight, its ball clean and unworn; an offset shows here first."),
     words=(),
     examples=lambda: [ArticulationTest(kind="articulation", orientations=3, points=5)],
 )

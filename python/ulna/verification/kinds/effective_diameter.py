@@ -10,6 +10,7 @@ import numpy as np
 from ulna.formats.numbers import Count
 from ulna.geometry.sphere import fit_sphere
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
 from ulna.verification.budget import Budget
 from ulna.verification.figures.asme_b89_4_22 import DIAMETER, DIAMETER_SPREAD, DIAMETER_WORST, effective_diameter_of
@@ -82,8 +83,8 @@ EFFECTIVE_DIAMETER = TestKind(
     growing=None,
     moved=False,
     length_errors=False,
-    again="Touch the ball again, over half of it.",
-    look="Look at the probe's ball, clean and unworn: is it the one that the arm file has?",
+    again=worded("Touch the ball again, over half of it."),
+    look=worded("Look at the probe's ball, clean and unworn: is it the one that the arm file has?"),
     words=(),
     examples=lambda: [DiameterTest(kind="effective-diameter", repeats=3, points=9)],
 )

@@ -8,7 +8,9 @@ from typing import Literal
 
 from ulna.formats.numbers import Count, Share
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, called, counted, counted_each
+from ulna.verification.departures import LONGEST, LONGEST_NOT_CHECKED
 from ulna.verification.figures.figure import Definition
 from ulna.verification.figures.iso_10360_12 import E_BI, E_UNI
 from ulna.verification.figures.lengths import OPPOSING
@@ -84,16 +86,17 @@ def _longest(longest_mm: float, table: LengthTest, bench: Bench) -> list[str]:
     if table.longest_share is None:
         return []
     if bench.range_mm is None:
-        return [
-            f"the measuring range is not stated (key 'range'): whether the longest length, {longest_mm:.1f} mm, is at "
-            f"least {100 * table.longest_share:g} % of it was not checked."
-        ]
+        return [worded(LONGEST_NOT_CHECKED, length=f"{longest_mm:.1f}", least=f"{100 * table.longest_share:g}")]
     share = longest_mm / bench.range_mm
     if share >= table.longest_share:
         return []
     return [
-        f"longest length: {longest_mm:.1f} mm, {100 * share:.0f} % of the range; the profile asks for at least "
-        f"{100 * table.longest_share:g} %."
+        worded(
+            LONGEST,
+            length=f"{longest_mm:.1f}",
+            share=f"{100 * share:.0f}",
+            least=f"{100 * table.longest_share:g}",
+        )
     ]
 
 
@@ -107,8 +110,8 @@ LENGTH = TestKind(
     growing=None,
     moved=False,
     length_errors=True,
-    again="Touch the length again in that place, both ends.",
-    look="Look at the bar: its seats clean, its supports as always, as warm as the protocol says.",
+    again=worded("Touch the length again in that place, both ends."),
+    look=worded("Look at the bar: its seats clean, its supports as always, as warm as the protocol says."),
     words=WORDS,
     examples=lambda: [
         LengthTest(kind="length", direction="uni", lengths=2, positions=2, repeats=2, longest_share=0.5),

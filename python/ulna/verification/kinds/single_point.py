@@ -10,7 +10,9 @@ from pydantic import Field
 
 from ulna.formats.numbers import Count, Shares
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, within_shares
+from ulna.verification.departures import AWAY_NOT_CHECKED, SEATS_NOT_CHECKED
 from ulna.verification.figures.asme_b89_4_22 import SPAT_2S, SPAT_MAX
 from ulna.verification.figures.asme_b89_4_22 import single_point as asme
 from ulna.verification.figures.faro import SPAT_AXES, half_ranges
@@ -85,9 +87,9 @@ def _shares(away_mm: dict[str, float], table: SinglePointTest, touches: Touches,
     if not table.shares or len(away_mm) != len(table.shares):
         return []
     if touches.source == "xyz":
-        return ["how far from the base the seats stood was not checked: coordinates may be in any frame."]
+        return [worded(AWAY_NOT_CHECKED)]
     if bench.range_mm is None:
-        return ["the measuring range is not stated (key 'range'): how far out the seats stood was not checked."]
+        return [worded(SEATS_NOT_CHECKED)]
     return within_shares("seat", away_mm, table.shares, bench.range_mm)
 
 
@@ -101,8 +103,8 @@ SINGLE_POINT = TestKind(
     growing=2,
     moved=True,
     length_errors=False,
-    again="Touch the seat again, elbow and wrist moved between touches, the probe pressed lightly.",
-    look="Look at the probe (tight, its ball clean and unworn) and at its seat (clean, does not give way).",
+    again=worded("Touch the seat again, elbow and wrist moved between touches, the probe pressed lightly."),
+    look=worded("Look at the probe (tight, its ball clean and unworn) and at its seat (clean, does not give way)."),
     words=(),
     examples=lambda: [
         SinglePointTest(

@@ -7,6 +7,7 @@ from typing import Literal
 
 from ulna.formats.numbers import Count
 from ulna.geometry.sphere import fit_sphere
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, called, counted, counted_each, tip_mm
 from ulna.verification.figures.iso_10360_12 import P_FORM, P_SIZE, probing_of
 from ulna.verification.kinds.kind import TestKind, TestTable
@@ -63,8 +64,8 @@ SPHERE = TestKind(
     growing=None,
     moved=False,
     length_errors=False,
-    again="Touch the ball again, over half of it.",
-    look="Look at the probe's ball and at the ball of the check: clean, unworn, nothing loose.",
+    again=worded("Touch the ball again, over half of it."),
+    look=worded("Look at the probe's ball and at the ball of the check: clean, unworn, nothing loose."),
     words=(),
     examples=lambda: [SphereTest(kind="sphere", positions=2, points=9)],
 )

@@ -11,8 +11,10 @@ from pydantic import Field
 from ulna.formats.numbers import Count, Shares
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench, Found, Length, counted, within_shares
 from ulna.verification.budget import Share, of_several
+from ulna.verification.departures import BARS_NOT_CHECKED
 from ulna.verification.figures.asme_b89_4_22 import (
     VOLUMETRIC_2RMS,
     VOLUMETRIC_2S,
@@ -125,7 +127,7 @@ def _shares(bars: dict[str, float], table: VolumetricTest, bench: Bench) -> list
     if not table.shares or len(bars) != len(table.shares):
         return []
     if bench.range_mm is None:
-        return ["the measuring range is not stated (key 'range'): the lengths of the bars were not checked."]
+        return [worded(BARS_NOT_CHECKED)]
     return within_shares("bar", bars, table.shares, bench.range_mm)
 
 
@@ -139,8 +141,8 @@ VOLUMETRIC = TestKind(
     growing=None,
     moved=False,
     length_errors=True,
-    again="Touch the bar again in those places, both ends.",
-    look="Look at the bars: their seats clean, their supports as always, as warm as the protocol says.",
+    again=worded("Touch the bar again in those places, both ends."),
+    look=worded("Look at the bars: their seats clean, their supports as always, as warm as the protocol says."),
     words=WORDS,
     examples=lambda: [VolumetricTest(kind="volumetric", positions=6, lengths=2, shares=[[0.5, 0.75], [0.8, 1.0]])],
 )
