@@ -145,6 +145,8 @@ def test_no_module_but_those_that_draw_or_keep_records_needs_an_extra() -> None:
         "alembic",
         "fastapi",
         "uvicorn",
+        "authlib",
+        "httpx2",
     }
 
 

@@ -72,11 +72,12 @@ def test_what_is_known_is_what_the_session_knows(
     from ulna.live.session import Session
     from ulna.live.stream import Stream
     from ulna.serve.activities.opened import stated_source
+from ulna.serve.sources import allow_all
 
     desk = server.workshop.desk
     arm = as_arm(desk.path(play["arm"]))
     purpose = purpose_of(desk.path(play["plan"]), arm, None, 500.0)
-    stated = stated_source(desk, play["source"])
+    stated = stated_source(desk, play["source"], allow_all)
     source = open_source(stated)
     session = Session(arm, purpose.spec, Stream(source, stated, True), fit=purpose.fit, goal_u_mm=0.03)
     session.go_on(touches_in(server.workshop.folder / "sessions" / touched["id"] / JOURNAL), None)

@@ -48,8 +48,8 @@ def test_cancelled(server: Threaded, client: Client) -> None:
         progress("further", 1, 2)
         raise AssertionError("it should have stopped")
 
-    first = jobs.begin("calibrate", "one", work)
-    second = jobs.begin("calibrate", "two", lambda progress: Made([]))
+    first = jobs.begin("calibrate", "one", work, "Ann")
+    second = jobs.begin("calibrate", "two", lambda progress: Made([]), "Ann")
     assert going.wait(60)
     assert client.get(f"/jobs/{second.id}")["state"] == "waiting"
     client.post(f"/jobs/{second.id}/cancel")
@@ -69,8 +69,8 @@ def test_one_that_fails_stops_no_other(
     def work(progress: Progress) -> Made:
         raise error
 
-    failed = server.workshop.jobs.begin("calibrate", "bad", work)
-    after = server.workshop.jobs.begin("calibrate", "good", lambda progress: Made([]))
+    failed = server.workshop.jobs.begin("calibrate", "bad", work, "Ann")
+    after = server.workshop.jobs.begin("calibrate", "good", lambda progress: Made([]), "Ann")
     assert client.waited(after.id)["state"] == "done"
     job = client.get(f"/jobs/{failed.id}")
     assert (job["state"], job["problem"]["status"]) == ("failed", status)
@@ -85,7 +85,7 @@ def test_one_that_says_much_floods_nobody(server: Threaded, client: Client) -> N
         return Made([], ["done counting"])
 
     with client.socket() as socket:
-        job = server.workshop.jobs.begin("calibrate", "counts", work)
+        job = server.workshop.jobs.begin("calibrate", "counts", work, "Ann")
         told = events(
             socket,
             lambda event: event["event"] == "job" and event["job"]["id"] == job.id and event["job"]["done"] == 5000,

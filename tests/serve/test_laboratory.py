@@ -11,6 +11,7 @@ import stat
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import get_args
 
@@ -40,6 +41,12 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Laboratory]:
         tmp_path_factory.mktemp("laboratory"), '[sources]\nhosts = ["127.0.0.1", "169.254.169.254"]\n'
     ) as one:
         yield one
+
+
+@pytest.fixture
+def standing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No time goes by for whoever must wait."""
+    monkeypatch.setattr(entrance, "Throttle", partial(Throttle, lambda: 0.0))
 
 
 @pytest.fixture
@@ -161,7 +168,7 @@ def test_nobody_learns_whose_name_it_was(lab: Laboratory, caplog: pytest.LogCapt
     assert "token" in stranger.refused(401, "POST", "/login", json={"way": "token", "token": "x"})
 
 
-def test_whoever_guesses_waits(tmp_path: Path) -> None:
+def test_whoever_guesses_waits(tmp_path: Path, standing: None) -> None:
     people_in(tmp_path / "bench", {"Lea": ("reader",)})
     with laboratory(tmp_path) as own:
         guessing = own.client()
@@ -351,7 +358,7 @@ def test_only_its_own_name_and_page_over_tls(lab: Laboratory) -> None:
         untrusting.get(client.base)
 
 
-def test_behind_a_proxy_nobody_else_is_answered(tmp_path: Path) -> None:
+def test_behind_a_proxy_nobody_else_is_answered(tmp_path: Path, standing: None) -> None:
     with laboratory(tmp_path, proxy="192.0.2.7", names='"arms.example"') as own:
         answer = httpx.get(f"http://127.0.0.1:{own.port}/", headers={"Host": "arms.example"})
         assert answer.status_code == 403
