@@ -72,7 +72,7 @@ def test_what_is_known_is_what_the_session_knows(
     from ulna.live.session import Session
     from ulna.live.stream import Stream
     from ulna.serve.activities.opened import stated_source
-from ulna.serve.sources import allow_all
+    from ulna.serve.sources import allow_all
 
     desk = server.workshop.desk
     arm = as_arm(desk.path(play["arm"]))
