@@ -11,7 +11,9 @@ import pytest
 from tests.serve.servers import Client, Threaded
 from websockets.exceptions import InvalidStatus
 
+from ulna.ground.worded import worded
 from ulna.serve import guarding
+from ulna.serve.contract.live import SaidEvent
 from ulna.serve.desk import LONGEST, plain_name
 from ulna.serve.problems import problem
 
@@ -182,4 +184,17 @@ def test_errors_are_problems_in_words(client: Client) -> None:
 def test_messages_name_files_as_they_came() -> None:
     at = "/srv/ulna-bench"
     said = f"{at}/desk/{'a' * 64}/plan.toml: wrong; see '{at}/sessions/2026-11-30-1/study.toml' and {at}/other/x.toml."
-    assert problem(400, said).detail == f"plan.toml: wrong; see 'study.toml' and {at}/other/x.toml."
+    shown = f"plan.toml: wrong; see 'study.toml' and {at}/other/x.toml."
+    assert problem(400, said).detail == shown
+    for sentence in (said, worded("{file}: wrong; see '{other}' and {third}.", **_parts(at))):
+        on_the_wire = json.loads(SaidEvent(sentence=sentence).model_dump_json())["sentence"]
+        assert on_the_wire["text"] == shown
+        assert "desk/" not in json.dumps(on_the_wire)
+
+
+def _parts(at: str) -> dict[str, str]:
+    return {
+        "file": f"{at}/desk/{'a' * 64}/plan.toml",
+        "other": f"{at}/sessions/2026-11-30-1/study.toml",
+        "third": f"{at}/other/x.toml",
+    }

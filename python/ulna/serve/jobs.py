@@ -18,7 +18,7 @@ from ulna.serve.contract.files import FileInfo
 from ulna.serve.contract.live import JobEvent
 from ulna.serve.contract.model import Problem, shortened
 from ulna.serve.hub import Hub
-from ulna.serve.problems import FAULT, NotThereError, problem, status_of, without_places
+from ulna.serve.problems import FAULT, NotThereError, problem, status_of
 
 KEPT = 100
 TOLD_S = 0.1
@@ -152,7 +152,7 @@ class Jobs:
             job.state = "running"
             self._tell(job)
             made = job.work(progress)
-            job.sentences = [without_places(each) for each in made.said]
+            job.sentences = list(made.said)
             for role, path in made.files:
                 info = self._keep(path)
                 job.made.append(wire.Made(role=role, sha256=info.sha256, name=info.name))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Awaitable, Callable
 
 from fastapi import FastAPI, Request
@@ -11,8 +10,9 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from ulna.ground.errors import UlnaInputError, for_people
-from ulna.ground.worded import Worded, kept, worded
+from ulna.ground.worded import kept, worded
 from ulna.serve.contract.model import Problem, Wording, shortened
+from ulna.serve.places import without_places
 
 MEDIA = "application/problem+json"
 TITLES = {
@@ -28,10 +28,6 @@ TITLES = {
     500: "This is a fault of Ulna's",
 }
 FAULT = worded("This is a fault of Ulna's, please report it; nothing was written.")
-
-
-_PLACES = re.compile(r"(?<![\w.])/(?:[^:;,'()\n]*/)?(?:desk/[0-9a-f]{64}|jobs/[0-9a-f]{16}|sessions/[\w-]+)/")
-"""Where a bench keeps files."""
 
 
 class NotThereError(UlnaInputError):
@@ -62,13 +58,6 @@ def problem(status: int, detail: str) -> Problem:
     """One."""
     said = shortened(for_people(without_places(detail)))
     return Problem(title=TITLES.get(status, "This did not go"), status=status, detail=str(said), said=Wording.of(said))
-
-
-def without_places(text: str) -> str:
-    """A message that names files as whoever brought them knows them."""
-    if isinstance(text, Worded):
-        return Worded(text.template, {name: without_places(value) for name, value in text.values.items()})
-    return _PLACES.sub("", text)
 
 
 def answer(status: int, detail: str) -> JSONResponse:

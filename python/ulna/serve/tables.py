@@ -20,8 +20,8 @@ from ulna.proposals.propose import Opened, Proposal, opened
 from ulna.proposals.several import Touched, parts_of, propose_all, touched
 from ulna.proposals.write import write_proposal
 from ulna.serve.contract import tables as wire
+from ulna.serve.contract.model import shortened
 from ulna.serve.desk import Desk
-from ulna.serve.problems import without_places
 from ulna.serve.remarks import remarks
 from ulna.serve.workshop import SESSIONS, Workshop
 from ulna.study.study import Study
@@ -72,7 +72,7 @@ def looked(desk: Desk, asked: wire.StudyAsked) -> wire.Looked:
         tables=tables,
         proposal=None if proposal is None else _proposal(proposal),
         questions=[_question(each) for each in questions],
-        wrong=None if wrong is None else without_places(wrong)[:4000],
+        wrong=None if wrong is None else shortened(wrong),
     )
 
 
@@ -90,7 +90,7 @@ def study_made(workshop: Workshop, asked: wire.StudyAsked) -> wire.StudyMade:
         proposal=_proposal(proposal),
         determined=found.determined,
         parameters=found.parameters,
-        sentences=[*map(without_places, said), *(not_determined(each) for each in found.lost if not each["frame"])],
+        sentences=[*said, *(not_determined(each) for each in found.lost if not each["frame"])],
     )
 
 

@@ -11,7 +11,6 @@ from ulna.formats.toml import read_toml
 from ulna.ground.errors import UlnaInputError
 from ulna.ground.worded import kept, worded
 from ulna.serve.contract.files import FileKind
-from ulna.serve.problems import without_places
 
 WHAT = 'a file of Ulna (TOML or JSON with a key "format")'
 _MOST = 64 << 20
@@ -82,7 +81,7 @@ def what_is(path: Path) -> tuple[FileKind, str]:
         found, said = KINDS[kind]
         return found, said(path)
     except UlnaInputError as error:
-        return FileKind.OTHER, without_places(kept(error))
+        return FileKind.OTHER, kept(error)
 
 
 def _format(path: Path) -> str:

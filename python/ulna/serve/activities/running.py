@@ -27,7 +27,7 @@ from ulna.serve.contract.model import shortened
 from ulna.serve.contract.words import Do, DoEnd
 from ulna.serve.frames import packed
 from ulna.serve.hub import Hub
-from ulna.serve.problems import NotNowError, without_places
+from ulna.serve.problems import NotNowError
 from ulna.serve.sayings import fault
 
 FRAMES_HZ, STREAM_HZ = 60.0, 2.0
@@ -166,7 +166,7 @@ class Running:
             self._hub.tell(event, self.name)
 
     def _say(self, sentence: str) -> None:
-        shown = shortened(for_people(without_places(sentence)))
+        shown = shortened(for_people(sentence))
         self._said.append(shown)
         self._hub.tell(SaidEvent(sentence=shown), self.name)
 

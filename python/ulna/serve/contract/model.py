@@ -9,6 +9,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from ulna.ground.worded import Worded
+from ulna.serve.places import without_places
 
 LONGEST = 4000
 """Characters of a sentence."""
@@ -62,9 +63,10 @@ def _sentence(given: Any) -> str:
     # a plain validator of strings would hand on a plain string
     if not isinstance(given, str):
         raise ValueError("expected a sentence")
-    if len(given) > LONGEST:
+    said = without_places(given)
+    if len(said) > LONGEST:
         raise ValueError(f"expected {LONGEST} characters at most")
-    return given
+    return said
 
 
 class _OnTheWire:
@@ -75,7 +77,8 @@ class _OnTheWire:
 
 
 Sentence = Annotated[str, PlainValidator(_sentence), PlainSerializer(Wording.of), _OnTheWire()]
-"""A string here, which may be `worded`; a `Wording` on the wire."""
+"""A string here, which may be `worded`; a `Wording` on the wire. It names files as they came, never where a bench keeps
+them."""
 
 
 class Value(Said):
