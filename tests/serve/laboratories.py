@@ -17,7 +17,7 @@ from tests.serve.servers import Client, Threaded
 
 from ulna.records.records import Records
 from ulna.serve import serving
-from ulna.serve.laboratory.accounts import Accounts
+from ulna.serve.laboratory.accounts import ACCOUNTS, Accounts
 from ulna.serve.laboratory.settings_file import read_settings
 
 PEOPLE = {
@@ -28,6 +28,8 @@ PEOPLE = {
     "Nils": ("admin",),
 }
 """Name → roles."""
+_HASHED: dict[tuple[str, ...], bytes] = {}
+"""Hashing takes its time on purpose: once for the same people is enough."""
 
 
 def password_of(name: str) -> str:
@@ -64,7 +66,11 @@ def people_in(bench: Path, people: dict[str, tuple[str, ...]] = PEOPLE) -> None:
     record, accounts = Records.init(bench, by="root"), Accounts(bench)
     for name, roles in people.items():
         record.person(name, roles)
-        accounts.set_password(name, password_of(name))
+        if tuple(people) not in _HASHED:
+            accounts.set_password(name, password_of(name))
+    kept = bench / ACCOUNTS
+    kept.write_bytes(_HASHED.setdefault(tuple(people), kept.read_bytes() if kept.exists() else b""))
+    kept.chmod(0o600)
 
 
 class Laboratory(Threaded):
