@@ -108,7 +108,7 @@ class Job(Said):
     kind: str
     title: Sentence
     state: Literal["waiting", "running", "done", "failed", "cancelled"]
-    stage: str
+    stage: Sentence
     done: int
     total: int
     """0: not known."""
