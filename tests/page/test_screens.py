@@ -62,6 +62,7 @@ def test_every_screen(opened: Callable[..., Any], server: Process, pictures: Pat
 def check(page: Any, where: str) -> None:
     """What holds of every screen in every state."""
     assert page.evaluate(OVERFLOWS) == [], where
+    assert "[object Object]" not in page.locator("body").inner_text(), where  # a sentence that nobody said
     assert page.evaluate("document.documentElement.lang") in ("en", "de", "zh")
     # the policy lets no script in from outside the page; the test's own is no part of it
     found = page.evaluate(f"{AXE.read_text(encoding='utf-8')}; axe.run(document)")

@@ -10,8 +10,9 @@ from sqlalchemy import Connection, select
 from ulna.calibration.result import Result
 from ulna.comparison.compare import MOST, Comparison, compare
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import recalled, worded
 from ulna.records import asked
-from ulna.records.acts.event import BREAKS
+from ulna.records.acts.event import BREAK_WORDS, BREAKS
 from ulna.records.bench import Bench
 from ulna.records.history import calibrations
 from ulna.records.tables import EVENT
@@ -38,7 +39,15 @@ def compare_last(bench: Bench, arm: str, last: int, probe: str | None, shared_u:
             step,
             before=_called(one, "as found" if done else ""),
             after=_called(other, "as left" if done else ""),
-            between=[f"{each['kind']} on {each['at'][:10]}, {each['text']}" for each in done],
+            between=[
+                worded(
+                    "{kind} on {day}, {text}",
+                    kind=recalled(each["kind"], BREAK_WORDS),
+                    day=each["at"][:10],
+                    text=each["text"],
+                )
+                for each in done
+            ],
         )
         for step, (one, other), done in zip(found.steps, pairwise(rows), between, strict=True)
     ]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, select
 
 from ulna.ground.errors import UlnaInputError
-from ulna.ground.worded import worded
+from ulna.ground.worded import listed, worded
 from ulna.records import asked
 from ulna.records.filed.kind import BAD, GOOD, OUT
 from ulna.records.history import Happening, history, withdrawn
@@ -85,9 +85,12 @@ def _found(connection: Connection, arm: str, since: str | None) -> tuple[str | N
 
 
 def _why(row: asked.Row) -> str:
-    limit = "" if row["limit_value"] is None else f", limit {row['limit_value']:g} {row['unit']}"
-    out = f", {OUT}" if row["verdict"] == OUT else ""
-    return f"{row['name']} {row['value']:.4g} {row['unit']}{limit}{out} ({row['source']})"
+    said = [f"{row['name']} {row['value']:.4g} {row['unit']}"]
+    if row["limit_value"] is not None:
+        said.append(worded("limit {limit} {unit}", limit=f"{row['limit_value']:g}", unit=row["unit"]))
+    if row["verdict"] == OUT:
+        said.append(worded("out of control"))
+    return worded("{what} ({source})", what=listed(said), source=row["source"])
 
 
 def _rests_on(connection: Connection, artefact: str, good: str | None, bad: str) -> list[Happening]:

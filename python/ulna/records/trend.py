@@ -16,8 +16,9 @@ from ulna.control.shewhart import FEWEST
 from ulna.control.until import Until, until
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import recalled, worded
 from ulna.records import asked
-from ulna.records.acts.event import BREAKS
+from ulna.records.acts.event import BREAK_WORDS, BREAKS
 from ulna.records.history import Point, figures
 from ulna.records.tables import EVENT
 
@@ -106,4 +107,7 @@ def _breaks(connection: Connection, arm: str, points: Sequence[Point]) -> list[s
         .order_by(EVENT.c.at)
     )
     rows: list[Any] = asked.rows(connection, asked_for)
-    return [f"{row['at'][:10]} {row['kind']}: {row['text']}" for row in rows]
+    return [
+        worded("{day} {kind}: {text}", day=row["at"][:10], kind=recalled(row["kind"], BREAK_WORDS), text=row["text"])
+        for row in rows
+    ]

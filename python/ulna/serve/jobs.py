@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from ulna.ground.errors import UlnaInputError
-from ulna.ground.worded import kept, worded
+from ulna.ground.worded import kept, recalled, templates, worded
 from ulna.serve.contract import jobs as wire
 from ulna.serve.contract.files import FileInfo
 from ulna.serve.contract.live import JobEvent
@@ -26,6 +26,26 @@ TOLD_S = 0.1
 
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
 Progress = Callable[[str, int, int], None]
+
+STAGES = templates(
+    "search",
+    "fit",
+    "plan",
+    "monte carlo",
+    "calibrations",
+    "certificate",
+    "check",
+    "choosing a model",
+    "convergence",
+    "evaluating",
+    "gathering",
+    "groups left out",
+    "judging extras",
+    "measure",
+    "trials",
+    "verify",
+)
+"""How far long work is, as rooms and core call it."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +91,7 @@ class _Job:
             title=self.title,
             who=self.who,
             state=self.state,
-            stage=self.stage,
+            stage=recalled(self.stage, STAGES),
             done=self.done,
             total=self.total,
             made=list(self.made),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ulna.ground.worded import templates
 from ulna.records.acts.act import Act, Row, of_files
 from ulna.records.entry import Entry
 from ulna.records.store import Store
@@ -12,6 +13,8 @@ from ulna.records.tables import EVENT
 KINDS = ("knock", "repair", "move", "adjustment", "firmware", "quarantine", "release", "note")
 BREAKS = ("adjustment", "repair", "firmware")
 """Events after which an arm may be another one: what was before is as found, what comes after as left."""
+BREAK_WORDS = templates("adjustment", "repair", "firmware")
+"""The same, as sentences have them."""
 STATE_AFTER = {"quarantine": "quarantined", "release": "in use"}
 """Events that change whether equipment may be used."""
 

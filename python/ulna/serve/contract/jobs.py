@@ -110,7 +110,7 @@ class Job(Said):
     who: Name
     """Who began it."""
     state: Literal["waiting", "running", "done", "failed", "cancelled"]
-    stage: str
+    stage: Sentence
     done: int
     total: int
     """0: not known."""
