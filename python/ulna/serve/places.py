@@ -13,5 +13,6 @@ _PLACES = re.compile(r"(?<![\w.])/(?:[^:;,'()\n]*/)?(?:desk/[0-9a-f]{64}|jobs/[0
 def without_places(text: str) -> str:
     """A message that names files as whoever brought them knows them."""
     if isinstance(text, Worded):
-        return Worded(text.template, {name: without_places(value) for name, value in text.values.items()})
+        values = {name: without_places(value) for name, value in text.values.items()}
+        return text if values == text.values else Worded(text.template, values)
     return _PLACES.sub("", text)
