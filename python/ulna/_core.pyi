@@ -257,7 +257,7 @@ class Fitted:
         """0: the given start was good enough."""
     @property
     def search_reason(self) -> str:
-        """ "" or "asked", "poor-minimum" or "unexplained"."""
+        """ "" or "asked", "poor-minimum", "unexplained" or "off-scale"."""
     @property
     def undecided_signs(self) -> list[list[int]]:
         """Sets of joints, from 1, that may all count the other way: readings and nominal arm do not tell."""

@@ -210,6 +210,7 @@ impl Fitted {
             Some(SearchReason::Asked) => "asked",
             Some(SearchReason::PoorMinimum) => "poor-minimum",
             Some(SearchReason::Unexplained) => "unexplained",
+            Some(SearchReason::OffScale) => "off-scale",
         }
     }
 

@@ -250,6 +250,15 @@ pub(crate) fn collapsed(problem: &Problem, parameters: &[f64]) -> bool {
     mobility(problem, parameters) < COLLAPSED * mobility(problem, &problem.parameters())
 }
 
+/// Whether no noise is stated and the joints move the tip quite otherwise than those of the arm as it is given: the
+/// readings of a small artefact are met a little by arms of other sizes as well, and nothing says how well they should.
+pub(crate) fn off_scale(problem: &Problem, parameters: &[f64]) -> bool {
+    let size = mobility(problem, parameters) / mobility(problem, &problem.parameters());
+    problem.noise().is_none() && !(1.0 - OFF_SCALE..1.0 / (1.0 - OFF_SCALE)).contains(&size)
+}
+
+/// A drawing is within reason where its arm is of the same size but for this part.
+const OFF_SCALE: f64 = 0.2;
 /// An arm whose joints move its tip by less than this part of what they did before has collapsed.
 const COLLAPSED: f64 = 0.3;
 

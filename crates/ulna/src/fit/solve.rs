@@ -3,7 +3,7 @@
 use crate::artefacts::Weighing;
 use crate::error::{Error, Result};
 use crate::fit::search::{
-    Plan, Throw, collapsed, does_better, is_zero_offset, may_collapse, poor, search, unexplained,
+    Plan, Throw, collapsed, does_better, is_zero_offset, may_collapse, off_scale, poor, search, unexplained,
 };
 use crate::fit::signs;
 pub use crate::fit::signs::Undecided;
@@ -74,6 +74,8 @@ pub enum SearchReason {
     PoorMinimum,
     /// The stated noise did not explain what the given start left.
     Unexplained,
+    /// No noise was stated, and the arm was of quite another size than the given one.
+    OffScale,
 }
 
 /// Where the fit ended, without judgement.
@@ -180,6 +182,7 @@ pub fn solve_from(
     let doubt = match (is_poor(way.problem, &way.parameters(), report.cost), way.problem.loss()) {
         (true, _) => Some(SearchReason::PoorMinimum),
         (false, None) if unexplained(way.problem, report.cost, free.len()) => Some(SearchReason::Unexplained),
+        (false, None) if off_scale(way.problem, &way.parameters()) => Some(SearchReason::OffScale),
         _ => None,
     };
     if let Some(reason) = doubt.filter(|_| search_reason.is_none() && can_search) {

@@ -68,6 +68,7 @@ def ending(fit: FitSummary) -> str:
             "asked": "as asked",
             "poor-minimum": "because the given start ended in a poor minimum",
             "unexplained": "because the stated noise did not explain what the given start left",
+            "off-scale": "because the given start led to an arm of quite another size",
         }.get(fit.search_reason, fit.search_reason)
         text += f" Searched {fit.searched_starts} starts, {reason}."
     if fit.folded:
