@@ -108,10 +108,9 @@ def test_steps_come_in_order_and_values_as_soon_as_they_are_known(client: Client
     scatter = [state["touches"][-1]["scatter"] for k, state in sorted(by_done.items()) if k]
     assert scatter[0] is None
     assert all(each["value"] > 0.0 for each in scatter[1:5])
-    assert all(
-        "Scatter in its seat" in event["sentences"][1] for event in told if event.get("touch", {}).get("number") == 2
-    )
-    said = [event["sentence"] for event in told if event["event"] == "said"]
+    second = [event["sentences"][1] for event in told if event.get("touch", {}).get("number") == 2]
+    assert all("Scatter in its seat" in each["text"] for each in second)
+    said = [event["sentence"]["text"] for event in told if event["event"] == "said"]
     assert any(line.startswith("SPAT_max") and line.endswith("of 0.0600 mm: pass.") for line in said)
 
 
@@ -189,7 +188,7 @@ def test_one_that_ends_early_is_written_and_goes_on(client: Client, server: Thre
         events(socket, done(3))
     ended = do(client, name, "end")
     assert [each["role"] for each in ended["left"]] == ["readings", "journal"]
-    assert "of 9 are touched" in ended["said"][-1]
+    assert "of 9 are touched" in ended["said"][-1]["text"]
     (unfinished,) = [each for each in client.get("/activities")["unfinished"] if each["id"] == name]
     assert (unfinished["kind"], unfinished["plan"]) == ("check", given["protocol"])
     client.refused(404, "POST", "/activities", json=a_test(given, go_on=name))
@@ -295,7 +294,7 @@ def test_what_a_profile_asks_for_makes_a_plan_that_can_be_touched(client: Client
             "/activities", a_test({**given, "test": made["test"], "beside": made["beside"]}, state="as-found")
         )
         assert begun["state"]["steps"] == wants["touches"] == made["touches"]
-        assert "Pass where" in begun["state"]["decision"]
+        assert "Pass where" in begun["state"]["decision"]["text"]
         do(client, begun["id"], "end")
     wrong = {
         "profile": "iso-10360-12",
@@ -322,4 +321,4 @@ def test_a_history_names_places_and_judges(client: Client, server: Threaded, giv
     places = [part["position"] for part in told[-1]["state"]["parts"] if part["test"] == "bar"]
     assert places == ["left", "2"]
     found = client.get(f"/checks/{left['check']}")
-    assert all(each["history"].startswith("too few: 1 ") for each in found["figures"])
+    assert all(each["history"]["text"].startswith("too few: 1 ") for each in found["figures"])

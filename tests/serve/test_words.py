@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from tests.serve.conftest import begin_touch
 from tests.serve.servers import Client, events, untold
 from tests.serve.test_commission import COUNTS, FAST, answerable, counting, state, turn
+from tests.serve.test_guided import a_check, a_test, do, done, ready
 
 from ulna.ground.errors import for_people
 from ulna.ground.worded import Worded, in_a_row, kept, listed, recalled, worded
@@ -119,6 +121,44 @@ def test_a_read_out_is_told_with_templates(
         told = events(socket, lambda event: event["event"] == "ended")
     assert untold(told) == []
     assert untold(ended) == []
+
+
+@pytest.mark.parametrize("begin", [a_check, a_test], ids=["check", "test"])
+def test_what_is_touched_step_by_step_is_told_with_templates(
+    client: Client, idle: None, begin: Callable[..., dict[str, object]]
+) -> None:
+    given = ready(client)
+    name = client.post("/activities", begin(given))["id"]
+    seen = []
+    with client.socket(name) as socket:
+        do(client, name, "follow", follows=True)
+        seen += events(socket, done(3))
+        do(client, name, "follow", follows=False)
+        do(client, name, "touch")  # in the same pose
+        do(client, name, "take-back")
+        do(client, name, "trust")
+        seen += [do(client, name, "end"), *events(socket, lambda event: event["event"] == "ended")]
+    kinds = {event.get("event") for event in seen}
+    assert {"touch", "refused", "state", "said", "ended"} <= kinds
+    name = client.post("/activities", begin(given, go_on=name))["id"]
+    with client.socket(name) as socket:
+        do(client, name, "follow", follows=True)
+        seen += events(socket, done())
+        ended = do(client, name, "end")
+        seen += [ended, *events(socket, lambda event: event["event"] == "ended")]
+    assert untold(seen) == []
+    found = {each["role"]: each["sha256"] for each in ended["left"]}
+    path = f"/checks/{found['check']}" if "check" in found else f"/verifications/{found['verification']}"
+    assert untold(client.get(path)) == []
+
+
+def test_how_a_test_is_made_is_told_with_templates(client: Client) -> None:
+    given = ready(client)
+    for profile in ("asme-b89-4-22", "iso-10360-12", "vdi-2617-9", given["beside"][0]):
+        assert untold(client.get("/tests/wants", profile=profile, arm=given["arm"])) == []
+        made = client.post("/tests", {"profile": profile, "arm": given["arm"]})
+        assert made["lacks"]
+        assert untold(made) == []
 
 
 def test_a_check_is_told_with_templates(client: Client, root: Path) -> None:

@@ -12,6 +12,7 @@ from ulna.checking.protocol import Protocol
 from ulna.checking.result_file import CheckedTable
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.study.readings.columns import ReadingsEntry, Source
 from ulna.study.readings.readings import angle_factors
 from ulna.verification.kinds.steps import Step
@@ -31,8 +32,12 @@ def check_written(protocol: Protocol) -> None:
     )
     if lost:
         raise UlnaInputError(
-            f"{protocol.path}: key 'readings.{lost[0]}': says how a table of another program is written; expected "
-            "none of it where touches are taken one by one. Take it out, or check from a file."
+            worded(
+                "{path}: key 'readings.{key}': says how a table of another program is written; expected none of it "
+                "where touches are taken one by one. Take it out, or check from a file.",
+                path=str(protocol.path),
+                key=lost[0],
+            )
         )
 
 

@@ -10,6 +10,8 @@ import difflib
 import re
 from collections.abc import Iterable
 
+from ulna.ground.worded import worded
+
 
 class UlnaInputError(Exception):
     """Input that cannot be used. ``str(error)`` is the whole message, meant for the user (exit code 2)."""
@@ -24,11 +26,11 @@ def nearest(name: str, known: Iterable[str]) -> str:
     names = list(known)
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     if close:
-        return f" Did you mean '{close[0]}'?"
+        return worded(" Did you mean '{name}'?", name=close[0])
     if not names:
         return ""
     shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
-    return f" Known: {shown}."
+    return worded(" Known: {names}.", names=shown)
 
 
 def wrong_type(given: object, expected: str) -> TypeError:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.ending import touches_in
 from ulna.live.faults import DOUBTFUL, Fault
 from ulna.live.figures import Calibrated
@@ -31,7 +32,7 @@ from ulna.verification.to_touch import WorkList
 
 AROUND_S = 1.0
 """Of the stream around each touch that the journal keeps."""
-DONE = "all that is asked for is touched: end it, or take a touch back"
+DONE = worded("all that is asked for is touched: end it, or take a touch back")
 
 
 @dataclass(frozen=True)
@@ -58,13 +59,19 @@ class ByList:
         channels = len(stream.mapping.names)
         if channels != arm.arm.n:
             raise UlnaInputError(
-                f"{stream.stated.path}: key 'map.channels': {channels} channels, but arm '{arm.arm.name}' has "
-                f"{arm.arm.n} joints; expected one for each, q1 first. Name them in a source file."
+                worded(
+                    "{path}: key 'map.channels': {channels} channels, but arm '{arm}' has {joints} joints; expected "
+                    "one for each, q1 first. Name them in a source file.",
+                    path=str(stream.stated.path),
+                    channels=channels,
+                    arm=arm.arm.name,
+                    joints=arm.arm.n,
+                )
             )
         self._sample_rad = _sample_rad(stream, arm)
         self._tells = self._sample_rad is not None or arm.noise.variance_mm2 > 0.0
         if by_itself and not self._tells:
-            raise UlnaInputError(f"arm '{arm.arm.name}': {UNSURE}.")
+            raise UlnaInputError(worded("arm '{arm}': {why}.", arm=arm.arm.name, why=UNSURE))
         stops = travel_of(arm.arm)
         stream.mapping.begin_within(stops)
         seat_mm = math.sqrt(arm.noise.variance_mm2)
@@ -110,7 +117,7 @@ class ByList:
         """A touch shall not count: its step is to be touched again. Nothing is deleted. Raises UlnaInputError."""
         own = next((k for k, each in enumerate(self.touches) if each.number == number), None)
         if own is None or self.touches[own].withdrawn is not None:
-            raise UlnaInputError(f"touch {number}: there is none that counts. Name another.")
+            raise UlnaInputError(worded("touch {number}: there is none that counts. Name another.", number=number))
         if self.journal is not None:
             self.journal.withdraw({"number": number, "reason": reason})
         self.touches[own] = replace(self.touches[own], withdrawn=reason)
@@ -119,7 +126,7 @@ class ByList:
     def go_on(self, touches: list[Touch], steps: Mapping[int, int]) -> None:
         """With those of a journal. Raises UlnaInputError where they are of another list."""
         if any(each.number not in steps or steps[each.number] >= len(self.work.listed) for each in touches):
-            raise UlnaInputError("the journal is of touches of another list; expected the same. Begin another.")
+            raise UlnaInputError(worded("the journal is of touches of another list; expected the same. Begin another."))
         self.touches, self.steps = list(touches), {each.number: steps[each.number] for each in touches}
 
     # ------------------------------------------------------------ what is known
@@ -179,20 +186,22 @@ class ByList:
     def _judged(self, found: Taken) -> Refused | OfStep:
         if self.stream.doubtful:
             return Refused(
-                "the angles are in doubt since a fault of the stream: check the arm, then say they are right"
+                worded("the angles are in doubt since a fault of the stream: check the arm, then say they are right")
             )
         step = self.step
         if step is None:
             return Refused(DONE)
         again = self._again(found.q_rad, step)
         if again is not None:
-            return Refused(f"the same posture as touch {again}: move elbow and wrist between touches")
+            return Refused(
+                worded("the same posture as touch {number}: move elbow and wrist between touches", number=again)
+            )
         poses = np.array([found.q_rad, *(each.q_rad for each in self.counting.values())])
         at_mm, *others_mm = self.arm.tips_mm(poses)
         why = self.work.unlikely(step, at_mm, dict(zip(self.counting, others_mm, strict=True)))
         if why is not None and self._doubtful_step != step:
             self._doubtful_step = step
-            return Refused(f"{why}: touch what is asked for, or the same once more, and it is taken")
+            return Refused(worded("{why}: touch what is asked for, or the same once more, and it is taken", why=why))
         self._doubtful_step = None
         touch = self._touch(found, step)
         self._keep(touch, step)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 from ulna.live.sources.virtual import VirtualSource
 from ulna.simulation.mover import Mover
 from ulna.verification.player import StepPlayer, range_of
@@ -27,8 +28,11 @@ class ListHand:
         """Raises UlnaInputError for an arm with several probes, which no hand tells apart."""
         if len(source.arm.probes) != 1:
             raise UlnaInputError(
-                f"arm '{source.arm.name}' has {len(source.arm.probes)} probes; expected one to play with. Move it by "
-                "hand."
+                worded(
+                    "arm '{arm}' has {count} probes; expected one to play with. Move it by hand.",
+                    arm=source.arm.name,
+                    count=len(source.arm.probes),
+                )
             )
         self._source, self._work, self._seed = source, work, seed
         mover = Mover(source.arm, source.travel_rad + np.array([MARGIN_RAD, -MARGIN_RAD]))

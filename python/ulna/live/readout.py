@@ -80,12 +80,18 @@ class ReadOut:
         channels = len(stream.mapping.names)
         if channels != arm.arm.n:
             raise UlnaInputError(
-                f"{stream.stated.path}: key 'map.channels': {channels} channels, but arm '{arm.arm.name}' has "
-                f"{arm.arm.n} joints; expected one for each, q1 first. Name them in a source file."
+                worded(
+                    "{path}: key 'map.channels': {channels} channels, but arm '{arm}' has {joints} joints; expected "
+                    "one for each, q1 first. Name them in a source file.",
+                    path=str(stream.stated.path),
+                    channels=channels,
+                    arm=arm.arm.name,
+                    joints=arm.arm.n,
+                )
             )
         self._sample_rad = sample_noise(stream, arm)
         if self._sample_rad is None and arm.noise.variance_mm2 == 0.0 and by_itself:
-            raise UlnaInputError(f"arm '{arm.arm.name}': {UNSURE}.")
+            raise UlnaInputError(worded("arm '{arm}': {why}.", arm=arm.arm.name, why=UNSURE))
         self._by_itself = by_itself
         stops, seat_mm = travel_of(arm.arm), math.sqrt(arm.noise.variance_mm2)
         stream.mapping.begin_within(stops)

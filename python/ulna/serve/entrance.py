@@ -7,6 +7,7 @@ import secrets
 from collections.abc import Sequence
 from typing import Literal, Protocol
 
+from ulna.ground.worded import worded
 from ulna.serve.contract.about import Login, LoginPassword, LoginToken
 from ulna.serve.people import ALL, Person
 from ulna.serve.problems import NotLetInError
@@ -34,7 +35,7 @@ class OwnEntrance:
     """Of a server for one person on their own machine, who may do everything."""
 
     ways: Sequence[Way] = ("token",)
-    closed = "Open the address that `ulna workbench` printed."
+    closed = worded("Open the address that `ulna workbench` printed.")
 
     def __init__(self, name: str, token: str | None = None) -> None:
         """name: of who works."""
@@ -47,9 +48,9 @@ class OwnEntrance:
             case LoginToken():
                 if hmac.compare_digest(asked.token.encode(), self.token.encode()):
                     return self._name
-                raise NotLetInError(f"token: it is not this server's. {self.closed}")
+                raise NotLetInError(worded("token: it is not this server's. {closed}", closed=self.closed))
             case LoginPassword():
-                raise NotLetInError(f"way: got 'password'; expected 'token'. {self.closed}")
+                raise NotLetInError(worded("way: got 'password'; expected 'token'. {closed}", closed=self.closed))
 
     def person(self, name: str) -> Person | None:
         """Whoever knew the token."""

@@ -15,6 +15,7 @@ from fastapi.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, listed, recalled, templates, worded
 from ulna.serve.entrance import Entrance
 from ulna.serve.guests import Guests
 from ulna.serve.people import Person
@@ -31,6 +32,7 @@ WHO = "ulna.who"
 """In a scope: the `Person` who asks."""
 ADDRESS = "ulna.address"
 """In a scope: of whose machine."""
+ROLES = templates("reader", "operator", "reviewer", "admin")
 MOST_BODY, MOST_WORDS = 300 << 20, 1 << 20
 """Bytes that are taken: of a file, and of all else, also where nobody said before how many come."""
 FILES = "/api/v1/files"
@@ -104,7 +106,7 @@ class Guard:
             return 403, f"Origin: got '{(origin or '')[:80]}'; expected this server's own. Use its page."
         said = headers.get("content-length", "0")
         if said.isdigit() and int(said) > _most(path):
-            return 413, f"{said} bytes; expected {_most(path)} at most. Cut it."
+            return 413, worded("{count} bytes; expected {most} at most. Cut it.", count=said, most=_most(path))
         return None
 
     async def _not_theirs(self, scope: Scope, headers: dict[str, str]) -> Refused | None:
@@ -116,7 +118,7 @@ class Guard:
         try:
             who: Person | None = None if name is None else await run_in_threadpool(self._entrance.person, name)
         except UlnaInputError as error:
-            return status_of(error), str(error)
+            return status_of(error), kept(error)
         scope[WHO] = who
         if below in OPEN:
             return None
@@ -126,8 +128,15 @@ class Guard:
         if role is not None and who.may(role):
             return None
         if role is None:
-            return 405, f"{scope['method']} {below[:80]}: this is not done here. Use the page."
-        return 403, f"{who.name}: this is for who is {role}; you are {', '.join(sorted(who.roles))}. Ask an admin."
+            return 405, worded(
+                "{method} {path}: this is not done here. Use the page.", method=scope["method"], path=below[:80]
+            )
+        return 403, worded(
+            "{name}: this is for who is {role}; you are {roles}. Ask an admin.",
+            name=who.name,
+            role=recalled(role, ROLES),
+            roles=listed([recalled(each, ROLES) for each in sorted(who.roles)]),
+        )
 
 
 def _most(path: str) -> int:

@@ -14,10 +14,14 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ulna.formats.output import write_file
+from ulna.ground.worded import recalled, templates, worded
 from ulna.records.records import Records
 from ulna.serve.contract.filing import IssueAsked, IssuedNow
 from ulna.serve.contract.proposals import Proposal
 from ulna.serve.problems import NotNowError, NotThereError
+
+STATES = templates("issued", "declined")
+"""What became of one."""
 
 
 class _Kept(BaseModel):
@@ -85,7 +89,14 @@ class Proposals:
     def _waiting(self, name: str) -> _Kept:
         kept = self._kept(name)
         if kept.state != "waiting":
-            raise NotNowError(f"proposal '{name}': was {kept.state} by {kept.decided_by}. Propose anew.")
+            raise NotNowError(
+                worded(
+                    "proposal '{name}': was {state} by {who}. Propose anew.",
+                    name=name,
+                    state=recalled(kept.state, STATES),
+                    who=str(kept.decided_by),
+                )
+            )
         return kept
 
     def _kept(self, name: str) -> _Kept:
@@ -95,7 +106,7 @@ class Proposals:
                 raise FileNotFoundError
             return _Kept.model_validate_json(path.read_bytes())
         except (OSError, ValueError, ValidationError):
-            raise NotThereError(f"proposal '{name[:80]}': there is none. Propose one.") from None
+            raise NotThereError(worded("proposal '{name}': there is none. Propose one.", name=name[:80])) from None
 
     def _keep(self, name: str, kept: _Kept) -> None:
         write_file(self._folder / f"{name}.json", kept.model_dump_json(indent=1) + "\n", force=True)

@@ -9,9 +9,11 @@ from typing import Any
 
 from ulna.arm.given import as_arm
 from ulna.ground.errors import UlnaInputError, nearest
+from ulna.ground.worded import recalled, worded
 from ulna.serve.beside import usable
 from ulna.serve.contract import guided as wire
 from ulna.serve.workshop import Workshop
+from ulna.verification.departures import FIGURES, said_of
 from ulna.verification.kinds.registry import kind_of
 from ulna.verification.plan_files import Filled, plan_toml
 from ulna.verification.player import range_of
@@ -39,8 +41,11 @@ def _profile(workshop: Workshop, given: str) -> Profile:
         return load_profile(path.name, path.parent, "profile")
     if given not in shipped():
         raise UlnaInputError(
-            f"profile: got '{given[:80]}', none that comes with Ulna.{nearest(given, shipped())} Name one, or "
-            "bring your own."
+            worded(
+                "profile: got '{given}', none that comes with Ulna.{near} Name one, or bring your own.",
+                given=given[:80],
+                near=nearest(given, shipped()),
+            )
         )
     return load_profile(given, Path(), "profile")
 
@@ -71,11 +76,11 @@ def wants(workshop: Workshop, given: str, arm: str) -> wire.ProfileWants:
         for figure in kind.figures(table):
             limit = kind.limits.get(figure.key)
             a, b = (limit["a"], limit["b"]) if isinstance(limit, Mapping) else (limit, None)
-            limits.append(wire.WantedLimit(figure=figure.key, name=figure.name, a_mm=a, b=b))
+            limits.append(wire.WantedLimit(figure=figure.key, name=recalled(figure.name, FIGURES), a_mm=a, b=b))
     return wire.ProfileWants(
         name=profile.file.name,
         standard=profile.file.standard,
-        statement=profile.file.statement,
+        statement=said_of(profile.file.statement),
         touches=len(steps_of(profile.file)),
         range_mm=range_mm,
         artefacts=artefacts,
@@ -93,8 +98,12 @@ def test_made(workshop: Workshop, asked: wire.TestAsked) -> wire.TestPlanMade:
     for each in asked.artefacts:
         if each.name not in wanted:
             raise UlnaInputError(
-                f"artefacts: '{each.name[:80]}': profile '{profile.file.name}' asks for none of that name."
-                f"{nearest(each.name, wanted)} Correct it."
+                worded(
+                    "artefacts: '{name}': profile '{profile}' asks for none of that name.{near} Correct it.",
+                    name=each.name[:80],
+                    profile=profile.file.name,
+                    near=nearest(each.name, wanted),
+                )
             )
         keys = {
             str(wanted[each.name].SIZE): each.size_mm,
@@ -117,7 +126,7 @@ def test_made(workshop: Workshop, asked: wire.TestAsked) -> wire.TestPlanMade:
     # beside its profile, so that it names it as a file that is brought with it
     text = plan_toml(profile, filled, True, profile.path.parent, states)
     name = f"{profile.file.name}-test.toml"
-    lacks = [f"artefact '{name}': its certificate" for name in wanted if name not in stated]
+    lacks = [worded("artefact '{name}': its certificate", name=name) for name in wanted if name not in stated]
     made = desk.put(name, text.encode())
     return wire.TestPlanMade(
         test=made.sha256, beside=own, name=made.name, touches=len(steps_of(profile.file)), lacks=lacks

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept
 from ulna.verification.figures.figure import Definition
 from ulna.verification.file import VerifyPlan
 from ulna.verification.kinds.registry import kind_of
@@ -53,7 +54,7 @@ def so_far(plan: VerifyPlan, state: State, work: WorkList, touched: Sequence[int
         try:
             (one,) = evaluated(replace(plan, touches={state: [own]})).states
         except UlnaInputError as error:
-            found.not_yet[name] = str(error)
+            found.not_yet[name] = kept(error)
             continue
         for test in one.tests:
             found.values.extend(

@@ -98,8 +98,11 @@ MANNERS = templates(
     "are those of the profile. No statement that the text of either was followed.",
     "Evaluated in the manner of ASME B89.4.22-2004, from secondary sources; counts are those of the profile. No "
     "statement that the text of the standard was followed.",
+    "A short test, to be tried; counts are of no standard.",
 )
-"""Of the profiles that come with Ulna."""
+"""Of the profiles that come with Ulna, and of the one that a virtual arm is tried with."""
+VERDICTS = templates("pass", "fail", "undecided")
+"""Of a value against its limit."""
 SENTENCES = templates(
     COUNTED_SOME,
     COUNTED_EACH,

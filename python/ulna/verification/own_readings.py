@@ -13,12 +13,15 @@ from ulna.arm.arm import Arm
 from ulna.formats.toml_text import toml_value
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import kept, worded
 from ulna.verification.file import load_verify
 from ulna.verification.kinds.steps import Step
 from ulna.verification.tables import STATES, State
 from ulna.verification.touches import LABELS
 
 _BLOCK = re.compile(r"(?ms)^\s*\[\[readings\]\].*?(?=^\s*\[(?!\[?readings[.\]])|^\s*\[\[readings\]\]|\Z)")
+
+_STATES: dict[State, str] = {"as-found": worded("the arm as found"), "as-left": worded("the arm as left")}
 
 
 def table_of(state: State) -> str:
@@ -43,8 +46,11 @@ def split(text: str, path: Path) -> tuple[str, list[tuple[State, str]]]:
         known, left = {"readings": None}, {}
     if {**left, "readings": found} != known:
         raise UlnaInputError(
-            f"{path}: key 'readings' is not written as tables of its own; expected [[readings]] before each. Write it "
-            "so."
+            worded(
+                "{path}: key 'readings' is not written as tables of its own; expected [[readings]] before each. Write "
+                "it so.",
+                path=str(path),
+            )
         )
     return head, [(each.get("state", "as-left"), block) for each, block in zip(found, blocks, strict=True)]
 
@@ -56,7 +62,7 @@ def begun(text: str, path: Path, state: State, arm: str, beside: Path) -> str:
     or after one that is.
     """
     head, blocks = split(text, path)
-    kept = []
+    earlier: list[str] = []
     for other in STATES:
         own = [block for each, block in blocks if each == other]
         if other == state or not own:
@@ -65,24 +71,31 @@ def begun(text: str, path: Path, state: State, arm: str, beside: Path) -> str:
         touched = _touched(head, own, beside)
         if before and touched is not None:
             raise UlnaInputError(
-                f"{path}: {_said(other)} comes before {_said(state)}, and is not touched yet ({touched}); expected its "
-                f"touches. Touch it first, or take its [[readings]] out of the file."
+                worded(
+                    "{path}: {first} comes before {second}, and is not touched yet ({why}); expected its touches. "
+                    "Touch it first, or take its [[readings]] out of the file.",
+                    path=str(path),
+                    first=_STATES[other],
+                    second=_STATES[state],
+                    why=touched,
+                )
             )
         if not before and touched is None:
             raise UlnaInputError(
-                f"{path}: {_said(state)} comes before {_said(other)}, which is touched already; expected a test that "
-                f"begins. Begin another."
+                worded(
+                    "{path}: {first} comes before {second}, which is touched already; expected a test that begins. "
+                    "Begin another.",
+                    path=str(path),
+                    first=_STATES[state],
+                    second=_STATES[other],
+                )
             )
-        kept += own if before else []
+        earlier += own if before else []
     mine = (
         f"[[readings]]\nfile = {toml_value(table_of(state))}\nstate = {toml_value(state)}\n"
         f'angle = "rad"\narm = {toml_value(arm)}\n'
     )
-    return "\n".join([head, *kept, mine])
-
-
-def _said(state: State) -> str:
-    return f"the arm {state.replace('-', ' ')}"
+    return "\n".join([head, *earlier, mine])
 
 
 def _touched(head: str, blocks: list[str], beside: Path) -> str | None:
@@ -92,7 +105,7 @@ def _touched(head: str, blocks: list[str], beside: Path) -> str | None:
     try:
         load_verify(trial)
     except UlnaInputError as error:
-        return str(error)
+        return kept(error)
     finally:
         trial.unlink()
     return None
@@ -104,7 +117,7 @@ def touched_table(steps: list[tuple[int, Step]], columns: dict[str, list[Any]]) 
         {
             "step": [number + 1 for number, _ in steps],
             **{name: [getattr(step, name) for _, step in steps] for name in LABELS},
-            "what to do": [step.what for _, step in steps],
+            "what to do": [str(step.what) for _, step in steps],
             **columns,
         },
         strict=False,

@@ -112,7 +112,7 @@ def touches_table(profile: Profile, columns: Mapping[str, list[Any]]) -> pl.Data
         "orientation": [step.orientation for step in steps],
         "repeat": [step.repeat for step in steps],
         "feature": [step.feature for step in steps],
-        "what to do": [step.what for step in steps],
+        "what to do": [str(step.what) for step in steps],
     }
     return pl.DataFrame({**labels, **columns}, strict=False)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ulna.ground.arrays import F64
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import Worded, worded
 from ulna.verification.certified import OFF_MM
 from ulna.verification.file import VerifyPlan
 from ulna.verification.kinds.registry import kind_of
@@ -87,9 +88,14 @@ class WorkList:
             away = float(np.linalg.norm(at_mm - there_mm))
             if least - own.off_mm <= away <= most + own.off_mm:
                 continue
-            end = f" at {its.step.feature}" if its.step.feature else ""
-            expected = f"{most:.1f} mm" if least == most else f"{most:.1f} mm at the most"
-            return f"it is {away:.1f} mm from what was touched{end} in this place, where {expected} is expected"
+            end = worded(" at {feature}", feature=its.step.feature) if its.step.feature else ""
+            length = f"{most:.1f} mm"
+            return worded(
+                "it is {away} mm from what was touched{end} in this place, where {expected} is expected",
+                away=f"{away:.1f}",
+                end=end,
+                expected=length if least == most else worded("{length} at the most", length=length),
+            )
         return None
 
     def check(self, state: State) -> None:
@@ -131,7 +137,10 @@ def work_list(plan: VerifyPlan, tip_mm: float | None) -> WorkList:
 
 def _what(step: Step, name: str) -> str:
     """In the words of the list, by the artefact's own name."""
-    return step.what.replace(step.artefact, name) if step.artefact else step.what
+    what = step.what
+    if not isinstance(what, Worded):
+        return what.replace(step.artefact, name) if step.artefact else what
+    return Worded(what.template, {key: name if key == "artefact" else value for key, value in what.values.items()})
 
 
 def _wanted(profile: ProfileFile, step: Step) -> Wanted:
@@ -160,13 +169,26 @@ def _named(plan: VerifyPlan) -> dict[str, str]:
         fitting = [own for own, table in there.items() if each.fits(table) and own not in names.values()]
         if len(fitting) < len(alike):
             raise UlnaInputError(
-                f"{plan.path}: {', '.join(alike)}: {len(alike)} artefacts of kind '{each.KIND}' are to be touched, and "
-                f"{len(fitting)} are stated; expected [artefact.NAME] of each, as its certificate has it. Add them."
+                worded(
+                    "{path}: {names}: {count} artefacts of kind '{kind}' are to be touched, and {stated} are stated; "
+                    "expected [artefact.NAME] of each, as its certificate has it. Add them.",
+                    path=str(plan.path),
+                    names=", ".join(alike),
+                    count=len(alike),
+                    kind=each.KIND,
+                    stated=len(fitting),
+                )
             )
         if len(fitting) > len(alike):
             raise UlnaInputError(
-                f"{plan.path}: which of {', '.join(fitting)} is to be touched as {', '.join(alike)} is not said; "
-                f"expected as many of kind '{each.KIND}'. Leave out what is not touched."
+                worded(
+                    "{path}: which of {stated} is to be touched as {names} is not said; expected as many of kind "
+                    "'{kind}'. Leave out what is not touched.",
+                    path=str(plan.path),
+                    stated=", ".join(fitting),
+                    names=", ".join(alike),
+                    kind=each.KIND,
+                )
             )
         alike.sort(key=lambda own: _nominal(wanted[own]))
         fitting.sort(key=lambda own: each.size_of(there[own]))

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar
 
+from ulna.ground.worded import worded
 from ulna.live.stream import Frames, Stream
 from ulna.serve.contract.activities import State
 from ulna.serve.contract.live import LiveEvent
@@ -48,4 +49,4 @@ class Doing(ABC):
 
 def unknown(asked: Do, kind: str) -> NotNowError:
     """Of a word that means nothing here."""
-    return NotNowError(f"'{asked.word}': that is no word of '{kind}'. Say another.")
+    return NotNowError(worded("'{word}': that is no word of '{kind}'. Say another.", word=asked.word, kind=kind))

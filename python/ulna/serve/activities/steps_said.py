@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ulna.ground.worded import recalled, worded
 from ulna.live.by_list import ByList, OfStep
 from ulna.live.said import length_said
 from ulna.live.touches import Touch
@@ -12,6 +13,7 @@ from ulna.serve.contract.model import Value
 from ulna.serve.texts import length, valued
 from ulna.verification.as_it_falls import Fallen, SoFar
 from ulna.verification.decision import Verdict, worst_verdict
+from ulna.verification.departures import FIGURES, VERDICTS, said_of
 from ulna.verification.to_touch import WorkList
 
 TOLD = 40
@@ -79,13 +81,13 @@ def figure_said(found: Fallen) -> guided.FigureNow:
     return guided.FigureNow(
         test=found.test,
         key=found.definition.key,
-        name=found.definition.name,
+        name=recalled(found.definition.name, FIGURES),
         of=list(single.labels.as_dict().items()),
         value=valued(single.value_mm, unit, u_mm, None if u_mm is None else found.k * u_mm),
         limit=None if limit_mm is None else valued(limit_mm, unit),
         guard=None if decided.guard_mm is None else length(decided.guard_mm),
         verdict=decided.verdict,
-        why=decided.why,
+        why=None if decided.why is None else said_of(decided.why),
     )
 
 
@@ -138,9 +140,18 @@ def taken_said(by_list: ByList, event: OfStep) -> activities.Touch:
 def lines_of(by_list: ByList, event: OfStep) -> list[str]:
     """A touch that was taken, and the scatter in its seat."""
     touch, step = event.touch, by_list.work.listed[event.step].step
-    lines = [f"Touch {touch.number}, {step.what}: spread {length_said(touch.spread_mm)}."]
+    lines = [
+        worded(
+            "Touch {number}, {what}: spread {spread}.",
+            number=touch.number,
+            what=step.what,
+            spread=length_said(touch.spread_mm),
+        )
+    ]
     scatter_mm = by_list.scatter_mm(event.step)
-    return lines if scatter_mm is None else [*lines, f"Scatter in its seat {length_said(scatter_mm)}."]
+    if scatter_mm is None:
+        return lines
+    return [*lines, worded("Scatter in its seat {scatter}.", scatter=length_said(scatter_mm))]
 
 
 def fallen_lines(by_list: ByList, step: int, known: SoFar) -> list[str]:
@@ -150,8 +161,12 @@ def fallen_lines(by_list: ByList, step: int, known: SoFar) -> list[str]:
     for each, owner in zip(known.values, _owners(by_list.work, known.values), strict=True):
         said = figure_said(each)
         if said.limit is not None and owner == part:
-            verdict = "" if said.verdict is None else f": {said.verdict}"
-            lines.append(f"{said.key} {said.value.text} of {said.limit.text} {said.limit.unit}{verdict}.")
+            of = {"key": said.key, "value": said.value.text, "limit": said.limit.text, "unit": said.limit.unit}
+            if said.verdict is None:
+                lines.append(worded("{key} {value} of {limit} {unit}.", **of))
+            else:
+                verdict = recalled(said.verdict, VERDICTS)
+                lines.append(worded("{key} {value} of {limit} {unit}: {verdict}.", verdict=verdict, **of))
     return lines
 
 

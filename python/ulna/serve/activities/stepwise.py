@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.live.by_list import ByList, OfStep
 from ulna.live.by_list import Happened as ListEvent
 from ulna.live.ending import JOURNAL
@@ -21,17 +22,19 @@ from ulna.serve.activities.activity import Doing, unknown
 from ulna.serve.activities.seen import Seen, tip_covariance
 from ulna.serve.activities.steps_said import fallen_lines, lines_of, parts_said, present_said, taken_said, touches_said
 from ulna.serve.activities.touching import steer, virtual_of
+from ulna.serve.contract.guided import NotYet
 from ulna.serve.contract.live import FaultEvent, LiveEvent, RefusedEvent, SaidEvent, StateEvent, TouchEvent
+from ulna.serve.contract.model import shortened
 from ulna.serve.contract.words import Do, DoFollow, DoGo, DoTakeBack, DoTouch, DoTrust, DoWithdraw
 from ulna.serve.frames import Newest
-from ulna.serve.problems import NotNowError
+from ulna.serve.problems import NotNowError, without_places
 from ulna.verification.as_it_falls import SoFar, so_far
 from ulna.verification.file import VerifyPlan
 from ulna.verification.tables import State
 from ulna.verification.verify import rule_of_plan
 
 TAKEN_BACK = "taken back by whoever touched"
-DONE = "All that is asked for is touched: end it, and it is evaluated."
+DONE = worded("All that is asked for is touched: end it, and it is evaluated.")
 
 
 class Stepwise(Doing):
@@ -82,13 +85,13 @@ class Stepwise(Doing):
             case DoTakeBack():
                 last = by_list.last
                 if last is None:
-                    raise NotNowError("nothing is touched that could be taken back. Touch what is asked for.")
+                    raise NotNowError(worded("nothing is touched that could be taken back. Touch what is asked for."))
                 yield from self._withdraw(last.number, TAKEN_BACK)
             case DoWithdraw():
                 yield from self._withdraw(asked.number, asked.reason)
             case DoTrust():
                 by_list.trust()
-                yield SaidEvent(sentence="The angles are taken for right again.")
+                yield SaidEvent(sentence=worded("The angles are taken for right again."))
             case DoGo():
                 steer(virtual_of(self.stream.source), asked)
                 if self._follows:
@@ -121,11 +124,15 @@ class Stepwise(Doing):
             self.by_list.journal.close()
         done, steps = len(self.by_list.counting), len(self.by_list.work.listed)
         if not done:
-            return [journal], ["Nothing was touched."]
+            return [journal], [worded("Nothing was touched.")]
         self._written()
         if done < steps:
             left = [("readings", self._table()), journal]
-            return left, [f"{done} of {steps} are touched: it is evaluated when all are. It can go on."]
+            return left, [
+                worded(
+                    "{done} of {steps} are touched: it is evaluated when all are. It can go on.", done=done, steps=steps
+                )
+            ]
         left, said = self._outcome()
         return [*left, ("readings", self._table()), journal], said
 
@@ -141,7 +148,9 @@ class Stepwise(Doing):
             "present": present_said(by_list),
             "parts": parts,
             "overall": overall,
-            "not_yet": [{"test": test, "why": why[:4000]} for test, why in self._so_far.not_yet.items()],
+            "not_yet": [
+                NotYet(test=test, why=shortened(without_places(why))) for test, why in self._so_far.not_yet.items()
+            ],
             "touches": touches_said(by_list),
             "follows": self._follows,
         }
@@ -152,7 +161,7 @@ class Stepwise(Doing):
                 if event.kind not in ORDINARY:
                     yield FaultEvent(kind=event.kind, sentence=event.text)
             case Refused():
-                yield RefusedEvent(sentence=f"Not taken: {event.reason}.")
+                yield RefusedEvent(sentence=worded("Not taken: {reason}.", reason=event.reason))
                 self._play()
             case OfStep():
                 # the tone before the figures: these take their time
@@ -168,7 +177,7 @@ class Stepwise(Doing):
     def _withdraw(self, number: int, reason: str) -> Iterator[LiveEvent]:
         self.by_list.withdraw(number, reason)
         self._evaluate()
-        yield SaidEvent(sentence=f"Touch {number} does not count any more.")
+        yield SaidEvent(sentence=worded("Touch {number} does not count any more.", number=number))
         yield StateEvent(state=self.state())
         self._play()
 

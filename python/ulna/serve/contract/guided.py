@@ -84,14 +84,14 @@ class FigureNow(Said):
     test: str
     key: str
     """Its short name."""
-    name: str
+    name: Sentence
     of: list[tuple[str, str]]
     value: Value
     limit: Value | None
     guard: Value | None
     """The guard band about the limit."""
     verdict: str | None
-    why: str | None
+    why: Sentence | None
     """Why there is none."""
 
 
@@ -251,7 +251,7 @@ class WantedLimit(Said):
     """A figure that a profile gives; the limit is an example, of no maker."""
 
     figure: Name
-    name: str
+    name: Sentence
     a_mm: float | None
     b: float | None
 

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 
 from ulna.formats.models import Strict
 from ulna.ground.errors import UlnaInputError
+from ulna.ground.worded import worded
 
 ACCOUNTS = "accounts.json"
 """In a bench folder."""
@@ -73,10 +74,17 @@ class Accounts:
         """Another one from now on."""
         if not SHORTEST <= len(password) <= LONGEST:
             raise UlnaInputError(
-                f"password: got {len(password)} letters; expected {SHORTEST} to {LONGEST}. Three or four words do."
+                worded(
+                    "password: got {count} letters; expected {least} to {most}. Three or four words do.",
+                    count=len(password),
+                    least=SHORTEST,
+                    most=LONGEST,
+                )
             )
         if password.casefold().strip() == name.casefold():
-            raise UlnaInputError("password: it is the name; expected something that nobody guesses. Choose another.")
+            raise UlnaInputError(
+                worded("password: it is the name; expected something that nobody guesses. Choose another.")
+            )
         with self._room:
             made = self._hasher.hash(password)
         self._change(name, password=made)

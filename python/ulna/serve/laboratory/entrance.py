@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ulna.ground.errors import UlnaInputError, for_people
+from ulna.ground.worded import worded
 from ulna.records.records import Records
 from ulna.serve.contract.about import Login, LoginPassword, LoginToken
 from ulna.serve.entrance import Way
@@ -29,7 +30,7 @@ FRESH_S = 2.0
 class LaboratoryEntrance:
     """Of one bench."""
 
-    closed = "Sign in."
+    closed = worded("Sign in.")
 
     def __init__(self, records: Records, settings: Settings) -> None:
         self._records, self._passwords = records, settings.file.sign_in.passwords
@@ -49,7 +50,7 @@ class LaboratoryEntrance:
         """By a password."""
         match asked:
             case LoginToken():
-                raise NotLetInError("way: got 'token'; expected a name and a password. Sign in.")
+                raise NotLetInError(worded("way: got 'token'; expected a name and a password. Sign in."))
             case LoginPassword():
                 return self._by_password(asked.name, asked.password, address)
 
@@ -59,8 +60,10 @@ class LaboratoryEntrance:
         if name is None or self.person(name) is None:
             _log("refused", sign_in, address, "nobody of the record")
             raise NotLetInError(
-                f"'{for_people(sign_in)[:80]}': nobody of this record. An admin adds them: "
-                "ulna record account NAME --sign-in …"
+                worded(
+                    "'{name}': nobody of this record. An admin adds them: ulna record account NAME --sign-in …",
+                    name=for_people(sign_in)[:80],
+                )
             )
         _log("in", name, address, "by the provider")
         return name
@@ -97,11 +100,11 @@ class LaboratoryEntrance:
 
     def _by_password(self, name: str, password: str, address: str) -> str:
         if not self._passwords:
-            raise NotLetInError("way: got 'password'; expected the provider. Sign in there.")
+            raise NotLetInError(worded("way: got 'password'; expected the provider. Sign in there."))
         wait_s = self.throttle.wait_s(name, address)
         if wait_s > 0.0:
             _log("refused", name, address, f"must wait {wait_s:.0f} s")
-            raise TooOftenError(f"password: wrong too often. Try again in {wait_s:.0f} s.")
+            raise TooOftenError(worded("password: wrong too often. Try again in {wait} s.", wait=f"{wait_s:.0f}"))
         self.throttle.failed(name, address)  # counts while it is looked at, whoever tries many at a time
         try:
             good = self.accounts.right(name, password) and self.person(name) is not None
@@ -110,7 +113,9 @@ class LaboratoryEntrance:
             raise
         if not good:
             _log("refused", name, address, "wrong name or password")
-            raise NotLetInError("name and password: they do not go together, or nobody has that name. Try again.")
+            raise NotLetInError(
+                worded("name and password: they do not go together, or nobody has that name. Try again.")
+            )
         self.throttle.good(name, address)
         _log("in", name, address, "by a password")
         return name

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 
+from ulna.ground.worded import worded
 from ulna.serve import recorded
 from ulna.serve.contract import filing as wire
 from ulna.serve.contract.records import AllDue, DueInfo
@@ -104,6 +105,9 @@ def issue(request: Request, asked: wire.IssueAsked) -> wire.IssuedNow:
     people sign in, a second one approves with their own name, not by being named."""
     if asked.approved_by is not None and laboratory_of(request) is not None:
         raise NotAllowedError(
-            f"approved_by: got '{asked.approved_by}'; expected nothing: who approves signs in. Propose it."
+            worded(
+                "approved_by: got '{name}'; expected nothing: who approves signs in. Propose it.",
+                name=asked.approved_by,
+            )
         )
     return issued(workshop(request).desk, records(request), asked)

@@ -35,7 +35,11 @@ BALL = WantedBall()
 
 def _steps(name: str, table: ArticulationTest) -> Iterator[Step]:
     for orientation in range(1, table.orientations + 1):
-        what = f"probe in orientation {orientation}: touch the ball over half of it"
+        what = worded(
+            "probe in orientation {orientation}: touch the {artefact} over half of it",
+            orientation=orientation,
+            artefact=BALL.name,
+        )
         yield from [Step(name, BALL.name, "1", str(orientation), what=what)] * table.points
 
 
@@ -50,9 +54,15 @@ def _evaluate(name: str, table: ArticulationTest, touches: Touches, bench: Bench
             points[what] = len(own.row)
         if len(centres) < 2:
             raise UlnaInputError(
-                f"{standing.path}: test '{name}', {called(artefact=artefact, position=position)}: all "
-                f"{len(standing.row)} points are of one orientation of the probe; expected {table.orientations} "
-                "orientations in the column 'orientation'. Add it."
+                worded(
+                    "{path}: test '{test}', {of}: all {count} points are of one orientation of the probe; expected "
+                    "{expected} orientations in the column 'orientation'. Add it.",
+                    path=str(standing.path),
+                    test=name,
+                    of=called(artefact=artefact, position=position),
+                    count=len(standing.row),
+                    expected=table.orientations,
+                )
             )
         value = float(enclosing_sphere(np.stack(centres)).diameter_mm)
         values.append(Single(Labels(artefact, position), value, bench.surroundings.standing()))

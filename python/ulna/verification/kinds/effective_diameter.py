@@ -35,7 +35,11 @@ BALL = WantedBall()
 
 def _steps(name: str, table: DiameterTest) -> Iterator[Step]:
     for repeat in range(1, table.repeats + 1):
-        what = f"ball near middle reach, measurement {repeat}: touch it all around"
+        what = worded(
+            "{artefact} near middle reach, measurement {repeat}: touch it all around",
+            artefact=BALL.name,
+            repeat=repeat,
+        )
         yield from [Step(name, BALL.name, repeat=str(repeat), what=what)] * table.points
 
 
@@ -54,8 +58,15 @@ def _evaluate(name: str, table: DiameterTest, touches: Touches, bench: Bench) ->
             points[what] = len(own.row)
         if len(singles) < 2:
             raise UlnaInputError(
-                f"{standing.path}: test '{name}', ball {ball.name}: all {len(standing.row)} points are of one "
-                f"measurement; expected {table.repeats} in the column 'repeat'. Add it."
+                worded(
+                    "{path}: test '{test}', ball {ball}: all {count} points are of one measurement; expected "
+                    "{expected} in the column 'repeat'. Add it.",
+                    path=str(standing.path),
+                    test=name,
+                    ball=ball.name,
+                    count=len(standing.row),
+                    expected=table.repeats,
+                )
             )
         mean, _, spread = effective_diameter_of(np.array([single.value_mm for single in singles]))
         labels = Labels(ball.name)

@@ -49,7 +49,7 @@ def _figures(table: SinglePointTest) -> list[Definition]:
 def _steps(name: str, table: SinglePointTest) -> Iterator[Step]:
     named = list(SEAT.places) if table.positions == len(SEAT.places) else range(1, table.positions + 1)
     for place in map(str, named):
-        what = f"seat '{place}': touch it, move elbow and wrist between touches"
+        what = worded("seat '{place}': touch it, move elbow and wrist between touches", place=place)
         yield from [Step(name, SEAT.name, place, what=what)] * table.points
 
 

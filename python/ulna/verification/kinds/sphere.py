@@ -31,7 +31,11 @@ BALL = WantedBall()
 
 def _steps(name: str, table: SphereTest) -> Iterator[Step]:
     for position in range(1, table.positions + 1):
-        what = f"ball in place {position}: touch it all around, over half of it"
+        what = worded(
+            "{artefact} in place {position}: touch it all around, over half of it",
+            artefact=BALL.name,
+            position=position,
+        )
         yield from [Step(name, BALL.name, str(position), what=what)] * table.points
 
 

@@ -63,8 +63,13 @@ def _evaluate(name: str, table: VolumetricTest, touches: Touches, bench: Bench) 
     measured = measured_lengths(name, touches, bench)
     if len(measured) < 2:
         raise UlnaInputError(
-            f"{touches.path}: test '{name}': one length; expected {table.positions}, each with its own label in the "
-            "column 'position'. Add them."
+            worded(
+                "{path}: test '{test}': one length; expected {expected}, each with its own label in the column "
+                "'position'. Add them.",
+                path=str(touches.path),
+                test=name,
+                expected=table.positions,
+            )
         )
     for each, _ in measured:
         if each.table.ends in OPPOSING:

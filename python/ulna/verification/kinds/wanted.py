@@ -12,6 +12,7 @@ import numpy as np
 
 from ulna.artefacts.surface import GOLDEN
 from ulna.ground.arrays import F64
+from ulna.ground.worded import worded
 from ulna.verification.bench import Bench
 from ulna.verification.certified import BallTable, CalibratedLengthTable, CertifiedTable
 from ulna.verification.kinds.steps import Step
@@ -184,7 +185,7 @@ class WantedLength(Wanted):
 
     def steps(self, test: str, position: str, repeat: str = "") -> list[Step]:
         """Both ends in one place, A first."""
-        end = "face" if self.faces else "seat"
+        said = {"artefact": self.name, "position": position}
         return [
             Step(
                 test,
@@ -193,7 +194,9 @@ class WantedLength(Wanted):
                 "",
                 repeat,
                 feature,
-                f"{self.name} in place {position}: touch {end} {feature}",
+                worded("{artefact} in place {position}: touch face {feature}", feature=feature, **said)
+                if self.faces
+                else worded("{artefact} in place {position}: touch seat {feature}", feature=feature, **said),
             )
             for feature in "AB"
             for _ in range(FACE_TOUCHES if self.faces else 1)
