@@ -128,6 +128,28 @@ def test_an_arm_is_found_or_the_fit_says_that_it_was_not(joints: int, artefact: 
     assert outcome(joints, artefact, stated=joints % 2 == 0, seed=1)[0] in ("right", "not found")
 
 
+@pytest.mark.parametrize("seed", [1, 2, 7, 10])
+def test_a_bar_of_two_millimetres_does_not_shrink_the_arm(seed: int) -> None:
+    """A drawing that is nearly right, nothing stated of the noise: residuals of a tenth of the bar are small beside the
+    arm, and a minimum with an arm of half the size leaves no more."""
+    rng = np.random.default_rng([seed, 52])
+    truth = small_arm(6, rng)
+    touched = standing(truth, rng, np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]), 60)
+    drawn = replace(
+        truth,
+        theta0_rad=truth.theta0_rad + rng.normal(0.0, 0.03, 5),
+        a_mm=truth.a_mm + rng.normal(0.0, 0.5, 5),
+        last=truth.last + rng.normal(0.0, 0.5, truth.last.shape),
+        tips_mm=truth.tips_mm + rng.normal(0.0, 0.5, (1, 3)),
+    )
+    problem = core_problem(drawn, [touched])
+    found = _core.fit(problem, np.zeros(len(problem.parameter_names), bool), seed=seed)
+    q, p = rng.uniform(-2.5, 2.5, (2, 60, 6))
+    ours = np.linalg.norm(found.arm.tip(q) - found.arm.tip(p), axis=1)
+    theirs = np.linalg.norm(truth.tip(q) - truth.tip(p), axis=1)
+    assert abs(ours - theirs).max() < 0.02 * reach_mm(truth)
+
+
 if __name__ == "__main__":
     kinds = list(ARTEFACTS)
     counted: Counter[str] = Counter()
