@@ -13,8 +13,9 @@ from tests.conftest import ROOT
 from tests.page.conftest import NARROW
 from tests.page.test_screens import check
 from tests.page.test_whole import _until_reached, begin
-from tests.serve.servers import Client, Process
+from tests.serve.servers import Client, Process, wait_for
 from tests.serve.test_commission import COUNTS, FAST, answerable, counting, state, turn
+from tests.serve.test_guided import a_check, a_test, ready
 
 PLATINUM = ROOT / "examples" / "platinum"
 LANGUAGES = ("de", "zh")
@@ -31,6 +32,7 @@ def looked_at(page: Any, pictures: Path, name: str) -> None:
     page.screenshot(path=str(pictures / f"{name}.png"), full_page=True)
     check(page, name)
     assert english(page) == [], name
+    assert "[object" not in page.locator("body").inner_text(), name
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -94,3 +96,53 @@ def test_a_check_and_files(
     page.goto(f"{base}/file")
     page.locator("table").first.wait_for()
     looked_at(page, pictures, f"said-file-{language}")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("begin", [a_check, a_test], ids=["check", "test"])
+def test_what_is_touched_step_by_step(
+    opened: Callable[..., Any],
+    client: Client,
+    server: Process,
+    pictures: Path,
+    begin: Callable[..., dict[str, object]],
+    language: str,
+) -> None:
+    body = begin(ready(client))
+    kind, name = body["kind"], client.post("/activities", body)["id"]
+
+    def do(word: str, **more: object) -> None:
+        client.post(f"/activities/{name}/do", {"word": word, **more})
+
+    page, base = opened(language), server.address.partition("/#")[0]
+    page.goto(f"{base}/{kind}")
+    page.locator("section.known").wait_for()
+    do("follow", follows=True)
+    wait_for(lambda: client.get(f"/activities/{name}")["state"]["done"] >= 3, "three touches")
+    do("follow", follows=False)
+    do("touch")  # in the same pose
+    page.locator("ul.said").wait_for()
+    looked_at(page, pictures, f"said-{kind}-refused-{language}")
+    do("follow", follows=True)
+    wait_for(lambda: client.get(f"/activities/{name}")["state"]["present"] is None, "all is touched")
+    page.set_viewport_size(NARROW)
+    looked_at(page, pictures, f"said-{kind}-touched-{language}")
+    do("end")
+    page.get_by_role("heading", name=re.compile("Das Antasten ist beendet|触测已结束")).wait_for()
+    looked_at(page, pictures, f"said-{kind}-over-{language}")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_test_is_made(
+    opened: Callable[..., Any], client: Client, server: Process, pictures: Path, language: str
+) -> None:
+    page, base = opened(language), server.address.partition("/#")[0]
+    page.goto(f"{base}/test")
+    page.get_by_role("button", name=re.compile("Mit einem virtuellen Arm|用虚拟测量臂")).click()
+    page.locator("section.known").wait_for()
+    page.keyboard.press("q")
+    page.get_by_role("dialog").get_by_role("button", name=re.compile("^(Beenden|结束)$")).click()
+    page.get_by_text(re.compile("Eine Abnahme aus einem Profil|由规范生成检定")).click()
+    page.get_by_role("button", name=re.compile("^(Abnahme machen|生成检定)")).click()
+    page.locator("main .alert.warn").wait_for()
+    looked_at(page, pictures, f"said-test-made-{language}")

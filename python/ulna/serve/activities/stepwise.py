@@ -27,7 +27,7 @@ from ulna.serve.contract.live import FaultEvent, LiveEvent, RefusedEvent, SaidEv
 from ulna.serve.contract.model import shortened
 from ulna.serve.contract.words import Do, DoFollow, DoGo, DoTakeBack, DoTouch, DoTrust, DoWithdraw
 from ulna.serve.frames import Newest
-from ulna.serve.problems import NotNowError, without_places
+from ulna.serve.problems import NotNowError
 from ulna.verification.as_it_falls import SoFar, so_far
 from ulna.verification.file import VerifyPlan
 from ulna.verification.tables import State
@@ -148,9 +148,7 @@ class Stepwise(Doing):
             "present": present_said(by_list),
             "parts": parts,
             "overall": overall,
-            "not_yet": [
-                NotYet(test=test, why=shortened(without_places(why))) for test, why in self._so_far.not_yet.items()
-            ],
+            "not_yet": [NotYet(test=test, why=shortened(why)) for test, why in self._so_far.not_yet.items()],
             "touches": touches_said(by_list),
             "follows": self._follows,
         }
