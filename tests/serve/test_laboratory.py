@@ -19,6 +19,7 @@ import httpx
 import pytest
 from tests.cli_runs import assert_bad_input, run
 from tests.serve.laboratories import PEOPLE, Laboratory, certificate_in, laboratory, password_of, people_in
+from tests.serve.servers import untold
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from ulna.records.records import Records
@@ -176,6 +177,17 @@ def test_whoever_guesses_waits(tmp_path: Path, standing: None) -> None:
             guessing.refused(401, "POST", "/login", json={"way": "password", "name": "Lea", "password": "guess"})
         right = {"way": "password", "name": "Lea", "password": password_of("Lea")}
         assert "Try again in" in guessing.refused(429, "POST", "/login", json=right)
+
+
+def test_who_is_not_let_in_is_told_with_templates(tmp_path: Path, standing: None) -> None:
+    people_in(tmp_path / "bench", {"Lea": ("reader",)})
+    with laboratory(tmp_path) as own:
+        lea, guessing = own.of("Lea"), own.client()
+        wrong = {"way": "password", "name": "Lea", "password": "guess"}
+        told = [lea.ask("POST", "/play"), lea.ask("POST", "/nothing"), guessing.ask("GET", "/me")]
+        told += [guessing.ask("POST", "/login", json=wrong) for _ in range(FREE + 1)]
+    assert [each.status_code for each in told] == [403, 405, *[401] * (FREE + 1), 429]
+    assert untold([each.json() for each in told]) == []
 
 
 def test_waiting_doubles_is_bounded_and_is_forgotten() -> None:
