@@ -41,7 +41,7 @@ def test_a_thousand_starts_one_radian_off(study):
             lost.append((seed, found.termination, found.rms_mm))
         if found.search_reason:
             noticed += 1
-            assert found.search_reason == "poor-minimum"
+            assert found.search_reason in ("poor-minimum", "off-scale")
             assert found.searched_starts > 0
         assert predicts(truth, fresh, found) < 1e-5 or not found.converged
         np.testing.assert_array_equal(found.start, start.parameters)

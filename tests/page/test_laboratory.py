@@ -99,6 +99,8 @@ def test_whoever_looks_is_told_so(
 ) -> None:
     lea = signed_in(opened, "Lea", "de", size=size)
     lea.get_by_text("Ändern dürfen nur Bediener").wait_for()
+    lea.locator("main h1").first.wait_for()
+    lea.wait_for_load_state("networkidle")
     check(lea, "a reader's bench")
     lea.screenshot(path=str(pictures / f"reader-{size['width']}.png"))
     lea.goto(f"{server.address}/people")

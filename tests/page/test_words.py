@@ -120,7 +120,12 @@ def test_what_is_touched_step_by_step(
     do("follow", follows=True)
     wait_for(lambda: client.get(f"/activities/{name}")["state"]["done"] >= 3, "three touches")
     do("follow", follows=False)
-    do("touch")  # in the same pose
+
+    def refused() -> bool:
+        do("touch")  # in the same pose
+        return bool(client.get(f"/activities/{name}")["said"])
+
+    wait_for(refused, "a refusal")
     page.locator("ul.said").wait_for()
     looked_at(page, pictures, f"said-{kind}-refused-{language}")
     do("follow", follows=True)

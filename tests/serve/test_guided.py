@@ -89,7 +89,7 @@ def test_a_check_is_what_the_command_finds_in_the_table(
     assert sorted((each["key"], each["value"]["value"], each["verdict"]) for each in fallen) == sorted(
         (each["key"], each["value"], each["verdict"]) for each in theirs["figures"]
     )
-    assert client.get("/activities")["unfinished"] == []
+    assert name not in {each["id"] for each in client.get("/activities")["unfinished"]}
 
 
 def test_steps_come_in_order_and_values_as_soon_as_they_are_known(client: Client, given: dict[str, Any]) -> None:
@@ -233,7 +233,7 @@ def test_killed_in_the_middle_it_goes_on(tmp_path: Path) -> None:
         assert command.returncode == 0, command.stderr
         theirs = json.loads((tmp_path / "out" / "verification.json").read_text())
         assert client.get(f"/verifications/{left['verification']}")["verdict"] == theirs["verdict"] == "pass"
-        assert client.get("/activities")["unfinished"] == []
+        assert name not in {each["id"] for each in client.get("/activities")["unfinished"]}
     finally:
         client.close()
         again.end()
